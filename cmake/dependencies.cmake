@@ -1,0 +1,13 @@
+# FindOpenVDB.cmake comes with Debian's package, outside the default module path, and switches
+# BUILD_SHARED_LIBS on, which our own libraries answer by saying STATIC.
+list(APPEND CMAKE_MODULE_PATH "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB")
+find_package(OpenVDB 10 REQUIRED COMPONENTS openvdb)
+find_package(PNG REQUIRED)
+find_package(tinyobjloader REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(Boost REQUIRED COMPONENTS program_options)
+find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
+find_library(XXHASH_LIBRARY xxhash REQUIRED)
+add_library(vdbsynth_xxhash INTERFACE)
+target_include_directories(vdbsynth_xxhash SYSTEM INTERFACE ${XXHASH_INCLUDE_DIR})
+target_link_libraries(vdbsynth_xxhash INTERFACE ${XXHASH_LIBRARY})

@@ -1,0 +1,42 @@
+#pragma once
+#include <stdexcept>
+#include <string>
+
+namespace vdbsynth {
+
+/// Why an operation failed. The command line maps every code to one exit code (see `exitCode`).
+enum class ErrorCode {
+    InvalidOption, ///< an option is unknown, missing or out of its range
+    ShapeMismatch, ///< two inputs whose sizes, voxel sizes or domains do not fit together
+    EmptyInput,    ///< a readable input with nothing in it (no faces, no active voxels)
+    Unusable,      ///< a readable input that this operation cannot work on
+    Io,            ///< a file that is missing, a directory, not readable or not writable
+    BadData,       ///< a file that is truncated, corrupt, holds NaN or a kind of grid nobody can use
+    Memory,        ///< more memory than allowed or present
+    Solver,        ///< a numerical method did not reach its goal
+    Cancelled      ///< the caller asked for a stop; nothing was returned or written
+};
+
+/// The one exception type of the library. The message is one line that names the file or the option,
+/// says what is wrong and what would be right.
+class Error : public std::runtime_error {
+public:
+    Error(ErrorCode code, const std::string& message) : std::runtime_error(message), mCode(code) {}
+    ErrorCode code() const noexcept { return mCode; }
+
+private:
+    ErrorCode mCode;
+};
+
+/// The exit code of the command line for an error: 2 for InvalidOption, 3 for Io and BadData,
+/// 130 for Cancelled, 1 for all others.
+int exitCode(ErrorCode code) noexcept;
+
+/// Throws Error InvalidOption "--NAME VALUE: must be RANGE" unless `valid`.
+/// @param name   option name as on the command line, without dashes
+/// @param value  the refused value as text
+/// @param range  the allowed range in words, for example "a whole number from 4 to 256"
+void requireOption(bool valid, const std::string& name, const std::string& value,
+                   const std::string& range);
+
+} // namespace vdbsynth

@@ -1,0 +1,150 @@
+#include "libvdbsynth/grid/brick_field.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/parallel.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+namespace vdbsynth {
+namespace {
+
+bool isConstant(const float* samples, std::size_t count) {
+    for (std::size_t i = 1; i < count; ++i)
+        if (samples[i] != samples[0]) return false;
+    return true;
+}
+
+} // namespace
+
+BrickField::BrickField(const IndexBox& box, float value) : mBox(box) {
+    if (box.empty()) throw Error(ErrorCode::InvalidOption, "a field needs a box of at least one voxel");
+    const Index3 size = box.size();
+    mBricks = {(size.x + kSide - 1) / kSide, (size.y + kSide - 1) / kSide, (size.z + kSide - 1) / kSide};
+    const std::size_t count = std::size_t(mBricks.x) * std::size_t(mBricks.y) * std::size_t(mBricks.z);
+    mSlots.assign(count, -1);
+    mConstants.assign(count, value);
+}
+
+BrickField BrickField::generate(const IndexBox& box, const RunContext& ctx,
+                                const std::function<void(const IndexBox&, float*)>& fill) {
+    BrickField field(box, 0.f);
+    constexpr std::size_t kGrain = 64;
+    const std::size_t count = field.mSlots.size();
+    struct Chunk {
+        std::vector<std::size_t> bricks;
+        std::vector<float> samples;
+    };
+    std::vector<Chunk> chunks((count + kGrain - 1) / kGrain);
+    parallelFor(ctx, count, kGrain, [&](std::size_t begin, std::size_t end) {
+        Chunk& chunk = chunks[begin / kGrain];
+        float samples[kSamples];
+        for (std::size_t brick = begin; brick < end; ++brick) {
+            const int bz = int(brick % std::size_t(field.mBricks.z));
+            const int by = int(brick / std::size_t(field.mBricks.z) % std::size_t(field.mBricks.y));
+            const int bx = int(brick / std::size_t(field.mBricks.z) / std::size_t(field.mBricks.y));
+            fill(IndexBox::cube(box.min + Index3{bx, by, bz} * kSide, kSide), samples);
+            if (isConstant(samples, kSamples)) {
+                field.mConstants[brick] = samples[0];
+            } else {
+                chunk.bricks.push_back(brick);
+                chunk.samples.insert(chunk.samples.end(), samples, samples + kSamples);
+            }
+        }
+    });
+    std::size_t stored = 0;
+    for (const Chunk& chunk : chunks) stored += chunk.bricks.size();
+    field.mSamples.reserve(stored * kSamples);
+    std::int32_t slot = 0;
+    for (Chunk& chunk : chunks) {
+        for (std::size_t brick : chunk.bricks) field.mSlots[brick] = slot++;
+        field.mSamples.insert(field.mSamples.end(), chunk.samples.begin(), chunk.samples.end());
+        chunk = Chunk();
+    }
+    return field;
+}
+
+float BrickField::at(const Index3& p) const {
+    const int x = std::clamp(p.x, mBox.min.x, mBox.max.x) - mBox.min.x;
+    const int y = std::clamp(p.y, mBox.min.y, mBox.max.y) - mBox.min.y;
+    const int z = std::clamp(p.z, mBox.min.z, mBox.max.z) - mBox.min.z;
+    const std::size_t brick = brickIndex(x / kSide, y / kSide, z / kSide);
+    if (mSlots[brick] < 0) return mConstants[brick];
+    return brickRow(brick, x % kSide, y % kSide)[z % kSide];
+}
+
+void BrickField::readBox(const Index3& corner, const Index3& size, float* out) const {
+    for (int i = 0; i < size.x; ++i) {
+        const int x = std::clamp(corner.x + i, mBox.min.x, mBox.max.x) - mBox.min.x;
+        for (int j = 0; j < size.y; ++j) {
+            const int y = std::clamp(corner.y + j, mBox.min.y, mBox.max.y) - mBox.min.y;
+            float* row = out + (std::size_t(i) * std::size_t(size.y) + std::size_t(j)) * std::size_t(size.z);
+            int k = 0;
+            while (k < size.z) {
+                const int z = std::clamp(corner.z + k, mBox.min.z, mBox.max.z) - mBox.min.z;
+                const std::size_t brick = brickIndex(x / kSide, y / kSide, z / kSide);
+                const bool inside = corner.z + k == mBox.min.z + z;
+                const int last = std::min(mBox.max.z - mBox.min.z, (z / kSide) * kSide + kSide - 1);
+                const int run = inside ? std::min(size.z - k, last - z + 1) : 1;
+                if (mSlots[brick] < 0)
+                    std::fill(row + k, row + k + run, mConstants[brick]);
+                else
+                    std::memcpy(row + k, brickRow(brick, x % kSide, y % kSide) + z % kSide,
+                                std::size_t(run) * sizeof(float));
+                k += run;
+            }
+        }
+    }
+}
+
+float* BrickField::touch(std::size_t brick) {
+    if (mSlots[brick] < 0) {
+        const std::size_t slot = mSamples.size() / kSamples;
+        if (slot >= std::size_t(std::numeric_limits<std::int32_t>::max()))
+            throw Error(ErrorCode::Memory, "a field cannot hold more than 2^31 bricks");
+        mSamples.resize(mSamples.size() + kSamples, mConstants[brick]);
+        mSlots[brick] = std::int32_t(slot);
+    }
+    return mSamples.data() + std::size_t(mSlots[brick]) * kSamples;
+}
+
+void BrickField::writeBox(const Index3& corner, const Index3& size, const float* values,
+                          const std::uint8_t* mask) {
+    const IndexBox part = mBox.intersection({corner, corner + size - Index3{1, 1, 1}});
+    for (int x = part.min.x; x <= part.max.x; ++x) {
+        for (int y = part.min.y; y <= part.max.y; ++y) {
+            for (int z = part.min.z; z <= part.max.z; ++z) {
+                const std::size_t source = (std::size_t(x - corner.x) * std::size_t(size.y) + std::size_t(y - corner.y)) *
+                                               std::size_t(size.z) + std::size_t(z - corner.z);
+                if (mask && !mask[source]) continue;
+                const int lx = x - mBox.min.x, ly = y - mBox.min.y, lz = z - mBox.min.z;
+                const std::size_t brick = brickIndex(lx / kSide, ly / kSide, lz / kSide);
+                if (mSlots[brick] < 0 && mConstants[brick] == values[source]) continue;
+                touch(brick)[((lx % kSide) * kSide + ly % kSide) * kSide + lz % kSide] = values[source];
+            }
+        }
+    }
+}
+
+bool BrickField::constantIn(const IndexBox& region, float& value) const {
+    const IndexBox part = mBox.intersection(region);
+    if (part.empty()) return false;
+    bool first = true;
+    for (int bx = (part.min.x - mBox.min.x) / kSide; bx <= (part.max.x - mBox.min.x) / kSide; ++bx)
+        for (int by = (part.min.y - mBox.min.y) / kSide; by <= (part.max.y - mBox.min.y) / kSide; ++by)
+            for (int bz = (part.min.z - mBox.min.z) / kSide; bz <= (part.max.z - mBox.min.z) / kSide; ++bz) {
+                const std::size_t brick = brickIndex(bx, by, bz);
+                if (mSlots[brick] >= 0) return false;
+                if (first) value = mConstants[brick];
+                else if (mConstants[brick] != value) return false;
+                first = false;
+            }
+    return true;
+}
+
+std::size_t BrickField::memoryBytes() const {
+    return mSlots.size() * (sizeof(std::int32_t) + sizeof(float)) + mSamples.size() * sizeof(float);
+}
+
+} // namespace vdbsynth

@@ -1,0 +1,72 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/math/index_box.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace vdbsynth {
+
+/// A scalar field over a box of voxels, stored as 8^3 bricks of which those with one value throughout
+/// cost four bytes. This is what algorithms see of a grid; `vdb/bricks.h` fills it and reads it back.
+/// Samples within a brick are x slowest, z fastest. Reads are safe from many threads at once, writes
+/// are not.
+class BrickField {
+public:
+    static constexpr int kSide = 8;
+    static constexpr int kSamples = kSide * kSide * kSide;
+
+    BrickField() = default;
+    /// Constant `value` over `box`. @throw Error InvalidOption (empty box)
+    BrickField(const IndexBox& box, float value);
+
+    /// Builds every brick by a call fill(brickBox, samples), from many threads. `brickBox` may reach
+    /// over the field's box; samples there count towards "one value throughout" and are never read.
+    /// @par Repeats same bits for any number of threads if fill is a pure function of its box.
+    static BrickField generate(const IndexBox& box, const RunContext& ctx,
+                               const std::function<void(const IndexBox& brickBox, float* samples)>& fill);
+
+    const IndexBox& box() const { return mBox; }
+    /// Value at p; outside the box the value of the nearest voxel inside.
+    float at(const Index3& p) const;
+    /// Value at a p that is known to be inside the box; the quick way for inner loops.
+    float inside(const Index3& p) const {
+        const int x = p.x - mBox.min.x, y = p.y - mBox.min.y, z = p.z - mBox.min.z;
+        const std::size_t brick = brickIndex(x >> 3, y >> 3, z >> 3);
+        const std::int32_t slot = mSlots[brick];
+        if (slot < 0) return mConstants[brick];
+        return mSamples[std::size_t(slot) * kSamples + std::size_t((((x & 7) << 3) | (y & 7)) << 3 | (z & 7))];
+    }
+    /// Copies the samples of [corner, corner + size) to out, x slowest, z fastest. Samples outside
+    /// the box are those of the nearest voxel inside.
+    void readBox(const Index3& corner, const Index3& size, float* out) const;
+    /// Writes the samples of [corner, corner + size) where `mask` is null or nonzero. Parts outside
+    /// the box are ignored. Bricks are allocated only where the value changes.
+    void writeBox(const Index3& corner, const Index3& size, const float* values,
+                  const std::uint8_t* mask = nullptr);
+    /// True, with the value, if all bricks that touch the box share one value.
+    bool constantIn(const IndexBox& region, float& value) const;
+
+    std::size_t brickCount() const { return mSlots.size(); }
+    std::size_t storedBricks() const { return mSamples.size() / kSamples; }
+    std::size_t memoryBytes() const;
+
+private:
+    std::size_t brickIndex(int bx, int by, int bz) const {
+        return (std::size_t(bx) * std::size_t(mBricks.y) + std::size_t(by)) * std::size_t(mBricks.z) + std::size_t(bz);
+    }
+    const float* brickRow(std::size_t brick, int lx, int ly) const {
+        return mSamples.data() + std::size_t(mSlots[brick]) * kSamples + (lx * kSide + ly) * kSide;
+    }
+    float* touch(std::size_t brick);
+
+    IndexBox mBox;
+    Index3 mBricks;                    // bricks along each axis
+    std::vector<std::int32_t> mSlots;  // per brick: index of its samples, or -1 where constant
+    std::vector<float> mConstants;     // per brick: its value where constant
+    std::vector<float> mSamples;       // kSamples floats a stored brick
+};
+
+} // namespace vdbsynth

@@ -1,0 +1,55 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/grid/brick_field.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace vdbsynth {
+
+/// The result of a block synthesis as what was copied from where: on a lattice of overlapping blocks over the
+/// target, the exemplar's block that each was matched to. Any grid of the exemplar is read through it.
+/// Block (a, b, c) begins at target voxel (origin(0,a), origin(1,b), origin(2,c)); origins are multiples of the
+/// stride, the last one is pulled back so that its block ends with the target.
+struct PatchMap {
+    Index3 target{0, 0, 0};          ///< size of the target [voxels]
+    int block = 16;                  ///< N [voxels]
+    int stride = 8;                  ///< [voxels], 1..N
+    int overhang = 0;                ///< voxels by which the last block may end beyond the target (a map scaled from an odd size)
+    std::vector<Index3> source;      ///< [lattice, x slowest, z fastest] minimum corner of the matched block in its exemplar
+    std::vector<std::int32_t> exemplar;  ///< [lattice] number of the exemplar
+
+    /// Number of blocks along each axis.
+    Index3 lattice() const;
+    int origin(int axis, int a) const;
+    std::size_t index(const Index3& l) const {
+        const Index3 n = lattice();
+        return (std::size_t(l.x) * std::size_t(n.y) + std::size_t(l.y)) * std::size_t(n.z) + std::size_t(l.z);
+    }
+    /// First and last lattice block that covers target coordinate p of an axis.
+    void covering(int axis, int p, int& first, int& last) const;
+
+    /// Makes lattice-sized, empty source and exemplar arrays.
+    void allocate();
+    /// The same map for grids of `factor` times the resolution.
+    PatchMap scaled(int factor, const Index3& newTarget) const;
+};
+
+/// Weight of sample i of a block in a vote, per axis (the weight in three dimensions is the product):
+/// the tent min(i + 1/2, N - i - 1/2) squared. Zero nowhere, largest in the middle.
+float voteWeight(int block, int i);
+inline constexpr const char* kVoteKernel = "tent^2";
+
+/// The block that has the most say at a target voxel: per axis the one whose middle is nearest, the lower on
+/// a tie.
+Index3 strongestBlock(const PatchMap& map, const Index3& voxel);
+
+/// Reads exemplars through a map: every target sample is the mean of the samples that the blocks over it
+/// propose, weighted by voteWeight. Sums are double, in lattice order.
+/// @param exemplars  by number; boxes begin at 0
+/// @par Cost    O(target voxels in bricks that are not constant * (block / stride)^3)
+/// @par Repeats same bits for any number of threads
+BrickField voteThroughMap(const PatchMap& map, const std::vector<std::shared_ptr<const BrickField>>& exemplars, const RunContext& ctx = {});
+
+} // namespace vdbsynth

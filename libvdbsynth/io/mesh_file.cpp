@@ -1,0 +1,168 @@
+#include "libvdbsynth/io/mesh_file.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/io/mesh_readers.h"
+#include "libvdbsynth/io/path.h"
+#include "libvdbsynth/io/text_scanner.h"
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+namespace vdbsynth {
+namespace {
+
+void checkFaces(const std::string& path, const Mesh& mesh) {
+    const auto check = [&](std::uint32_t index) {
+        if (index >= mesh.points.size())
+            throw Error(ErrorCode::BadData, path + ": a face uses vertex " + std::to_string(index) + " of " +
+                                                std::to_string(mesh.points.size()) + " (counting from 0)");
+    };
+    for (const Triangle& t : mesh.triangles) for (std::uint32_t i : t) check(i);
+    for (const Quad& q : mesh.quads) for (std::uint32_t i : q) check(i);
+    if (mesh.faceCount() == 0) throw Error(ErrorCode::EmptyInput, path + ": no faces; a mesh with at least one face is needed");
+}
+
+class Output {
+public:
+    explicit Output(const std::string& path) : mPath(path), mFile(path, std::ios::binary | std::ios::trunc) {
+        if (!mFile) throw Error(ErrorCode::Io, path + ": cannot be written: " + std::strerror(errno));
+    }
+    void write(const std::string& text) { mFile.write(text.data(), std::streamsize(text.size())); }
+    void finish() {
+        mFile.close();
+        if (!mFile) throw Error(ErrorCode::Io, mPath + ": writing failed: " + std::strerror(errno));
+    }
+
+private:
+    std::string mPath;
+    std::ofstream mFile;
+};
+
+void appendPoint(std::string& text, const Vec3f& p) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (axis) text += ' ';
+        appendReal(text, p[axis]);
+    }
+    text += '\n';
+}
+
+template <typename Face>
+void appendFaces(std::string& text, const std::vector<Face>& faces, const std::string& prefix, std::uint32_t first) {
+    for (const Face& face : faces) {
+        text += prefix;
+        for (std::uint32_t index : face) text += ' ' + std::to_string(index + first);
+        text += '\n';
+    }
+}
+
+std::string objText(const Mesh& mesh) {
+    std::string text = "# vdb_synth\n";
+    for (const Vec3f& p : mesh.points) {
+        text += "v ";
+        appendPoint(text, p);
+    }
+    appendFaces(text, mesh.triangles, "f", 1);
+    appendFaces(text, mesh.quads, "f", 1);
+    return text;
+}
+
+std::string offText(const Mesh& mesh) {
+    std::string text = "OFF\n" + std::to_string(mesh.points.size()) + ' ' + std::to_string(mesh.faceCount()) + " 0\n";
+    for (const Vec3f& p : mesh.points) appendPoint(text, p);
+    appendFaces(text, mesh.triangles, "3", 0);
+    appendFaces(text, mesh.quads, "4", 0);
+    return text;
+}
+
+template <typename T>
+void appendBytes(std::string& text, const T& value) {
+    text.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+std::string plyBytes(const Mesh& mesh) {
+    std::string text = "ply\nformat binary_little_endian 1.0\ncomment vdb_synth\nelement vertex " +
+                       std::to_string(mesh.points.size()) +
+                       "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+                       std::to_string(mesh.faceCount()) + "\nproperty list uchar uint vertex_indices\nend_header\n";
+    for (const Vec3f& p : mesh.points) appendBytes(text, p);
+    for (const Triangle& t : mesh.triangles) { text += char(3); appendBytes(text, t); }
+    for (const Quad& q : mesh.quads) { text += char(4); appendBytes(text, q); }
+    return text;
+}
+
+std::string stlBytes(const Mesh& mesh) {
+    std::string text = "vdb_synth";
+    text.resize(80, ' ');
+    const std::vector<Triangle> triangles = triangulated(mesh);
+    appendBytes(text, std::uint32_t(triangles.size()));
+    for (const Triangle& t : triangles) {
+        const Vec3f a = mesh.points[t[0]], b = mesh.points[t[1]], c = mesh.points[t[2]];
+        appendBytes(text, normalized(cross(b - a, c - a)));
+        appendBytes(text, a);
+        appendBytes(text, b);
+        appendBytes(text, c);
+        appendBytes(text, std::uint16_t(0));
+    }
+    return text;
+}
+
+} // namespace
+
+bool meshFormatOf(const std::string& path, MeshFormat& format) {
+    const std::string extension = extensionOf(path);
+    if (extension == "obj") format = MeshFormat::Obj;
+    else if (extension == "ply") format = MeshFormat::Ply;
+    else if (extension == "stl") format = MeshFormat::Stl;
+    else if (extension == "off") format = MeshFormat::Off;
+    else return false;
+    return true;
+}
+
+Mesh readMesh(const std::string& path, const RunContext& ctx) {
+    MeshFormat format{};
+    if (!meshFormatOf(path, format))
+        throw Error(ErrorCode::InvalidOption, path + ": unknown extension; meshes are .obj, .ply, .stl or .off");
+    Stage stage(ctx, "reading " + path, 2, /* reading= */ true);
+    const std::string content = readWholeFile(path);
+    stage.advance();
+    if (content.empty()) throw Error(ErrorCode::BadData, path + ": the file is empty");
+    Mesh mesh;
+    switch (format) {
+        case MeshFormat::Obj: mesh = readObj(path, content); break;
+        case MeshFormat::Ply: mesh = readPly(path, content); break;
+        case MeshFormat::Stl: mesh = readStl(path, content); break;
+        case MeshFormat::Off: mesh = readOff(path, content); break;
+    }
+    checkFaces(path, mesh);
+    stage.advance();
+    return mesh;
+}
+
+void writeMesh(const std::string& path, MeshFormat format, const Mesh& mesh) {
+    Output output(path);
+    switch (format) {
+        case MeshFormat::Obj: output.write(objText(mesh)); break;
+        case MeshFormat::Ply: output.write(plyBytes(mesh)); break;
+        case MeshFormat::Stl: output.write(stlBytes(mesh)); break;
+        case MeshFormat::Off: output.write(offText(mesh)); break;
+    }
+    output.finish();
+}
+
+void writePointsPly(const std::string& path, const PointCloud& cloud) {
+    const bool normals = cloud.normals.size() == cloud.points.size();
+    std::string text = "ply\nformat binary_little_endian 1.0\ncomment vdb_synth\nelement vertex " +
+                       std::to_string(cloud.points.size()) + "\nproperty float x\nproperty float y\nproperty float z\n";
+    if (normals) text += "property float nx\nproperty float ny\nproperty float nz\n";
+    text += "end_header\n";
+    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+        appendBytes(text, cloud.points[i]);
+        if (normals) appendBytes(text, cloud.normals[i]);
+    }
+    Output output(path);
+    output.write(text);
+    output.finish();
+}
+
+} // namespace vdbsynth

@@ -1,0 +1,16 @@
+#pragma once
+#include "libvdbsynth/geometry/mesh.h"
+
+#include <string>
+
+namespace vdbsynth {
+
+// One reader a format, behind readMesh (mesh_file.h), which checks indices and faces of what they
+// return. `path` is for messages, `content` is the whole file.
+// @throw Error BadData
+Mesh readObj(const std::string& path, const std::string& content);
+Mesh readOff(const std::string& path, const std::string& content);
+Mesh readPly(const std::string& path, const std::string& content);
+Mesh readStl(const std::string& path, const std::string& content);
+
+} // namespace vdbsynth

@@ -1,0 +1,52 @@
+// OFF and its variants with extra numbers a vertex (NOFF, COFF, STOFF, CNOFF): ascii only.
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/io/mesh_readers.h"
+#include "libvdbsynth/io/text_scanner.h"
+
+namespace vdbsynth {
+
+Mesh readOff(const std::string& path, const std::string& content) {
+    TextScanner scanner(path, content);
+    std::string_view header = scanner.word();
+    const std::size_t suffix = header.size() >= 3 ? header.size() - 3 : 0;
+    if (header.size() < 3 || header.substr(suffix) != "OFF" || header.size() > 6)
+        scanner.fail("not an OFF file: it must begin with OFF");
+    if (header.find('4') != std::string_view::npos) scanner.fail("4-dimensional OFF is not supported; convert it to OFF");
+    {
+        TextScanner ahead = scanner;
+        if (ahead.wordOnLine() == "BINARY") scanner.fail("binary OFF is not supported; convert it to ascii OFF or ply");
+    }
+    const std::int64_t vertices = scanner.whole(), faces = scanner.whole();
+    scanner.whole();  // edges, often 0 and never needed
+    // Every vertex takes at least six characters and every face eight.
+    if (vertices < 0 || faces < 0 || vertices > std::int64_t(content.size() / 6 + 1) || faces > std::int64_t(content.size() / 4 + 1))
+        throw Error(ErrorCode::BadData, path + ": the header claims " + std::to_string(vertices) + " vertices and " +
+                                            std::to_string(faces) + " faces, more than the file can hold");
+    Mesh mesh;
+    mesh.points.reserve(std::size_t(vertices));
+    for (std::int64_t i = 0; i < vertices; ++i) {
+        Vec3f p;
+        p.x = scanner.real();
+        p.y = scanner.real();
+        p.z = scanner.real();
+        mesh.points.push_back(p);
+        scanner.skipLine();  // normals, colours, texture coordinates
+    }
+    std::vector<std::uint32_t> corners;
+    for (std::int64_t i = 0; i < faces; ++i) {
+        const std::int64_t count = scanner.whole();
+        if (count < 1 || count > vertices) scanner.fail("a face of " + std::to_string(count) + " corners");
+        corners.clear();
+        for (std::int64_t c = 0; c < count; ++c) {
+            const std::int64_t index = scanner.whole();
+            if (index < 0 || index >= vertices)
+                scanner.fail("vertex " + std::to_string(index) + " of " + std::to_string(vertices) + " does not exist (counting from 0)");
+            corners.push_back(std::uint32_t(index));
+        }
+        appendPolygon(mesh, corners.data(), corners.size());
+        scanner.skipLine();  // colours
+    }
+    return mesh;
+}
+
+} // namespace vdbsynth

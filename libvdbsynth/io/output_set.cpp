@@ -1,0 +1,85 @@
+#include "libvdbsynth/io/output_set.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/io/path.h"
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace vdbsynth {
+namespace {
+
+[[noreturn]] void failIo(const std::string& path, const std::string& what) {
+    throw Error(ErrorCode::Io, path + ": " + what + ": " + std::strerror(errno));
+}
+
+// Removes ".NAME.<pid>.tmp" of processes that no longer run.
+void removeStale(const std::string& folder, const std::string& name) {
+    const std::string prefix = "." + name + ".";
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+        const std::string found = entry.path().filename().string();
+        if (found.size() <= prefix.size() + 4 || found.compare(0, prefix.size(), prefix) != 0 ||
+            found.compare(found.size() - 4, 4, ".tmp") != 0) continue;
+        const std::string digits = found.substr(prefix.size(), found.size() - prefix.size() - 4);
+        if (digits.empty() || digits.size() > 9 || digits.find_first_not_of("0123456789") != std::string::npos) continue;
+        const pid_t process = pid_t(std::stol(digits));
+        if (::kill(process, 0) != 0 && errno == ESRCH) std::filesystem::remove(entry.path(), ignored);
+    }
+}
+
+void syncToDisk(const std::string& temporary, const std::string& path) {
+    const int file = ::open(temporary.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) failIo(path, "cannot be written");
+    const int result = ::fsync(file);
+    const int reason = errno;
+    ::close(file);
+    errno = reason;
+    if (result != 0 && reason != EINVAL) failIo(path, "writing failed");
+}
+
+} // namespace
+
+OutputSet::OutputSet(std::function<void(const std::string&)> onTemporary) : mOnTemporary(std::move(onTemporary)) {}
+
+OutputSet::~OutputSet() {
+    for (const Entry& entry : mEntries) ::unlink(entry.temporary.c_str());
+}
+
+std::string OutputSet::add(const std::string& path) {
+    for (const Entry& entry : mEntries)
+        if (entry.path == path) throw Error(ErrorCode::InvalidOption, path + ": named as an output twice");
+    struct stat status {};
+    if (::stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode))
+        throw Error(ErrorCode::Io, path + ": is a directory; name a file");
+    const std::string folder = folderOf(path), name = fileNameOf(path);
+    if (::stat(folder.c_str(), &status) != 0) throw Error(ErrorCode::Io, path + ": the folder " + folder + " does not exist");
+    removeStale(folder, name);
+    const std::string temporary = folder + "/." + name + "." + std::to_string(::getpid()) + ".tmp";
+    if (mOnTemporary) mOnTemporary(temporary);
+    const int file = ::open(temporary.c_str(), O_CREAT | O_WRONLY | O_TRUNC | O_CLOEXEC, 0666);
+    if (file < 0) failIo(path, "cannot be written");
+    ::close(file);
+    mEntries.push_back({path, temporary});
+    return temporary;
+}
+
+void OutputSet::commit() {
+    for (const Entry& entry : mEntries) syncToDisk(entry.temporary, entry.path);
+    while (!mEntries.empty()) {
+        const Entry entry = mEntries.front();
+        if (::rename(entry.temporary.c_str(), entry.path.c_str()) != 0) failIo(entry.path, "cannot be written");
+        mEntries.erase(mEntries.begin());
+    }
+}
+
+} // namespace vdbsynth

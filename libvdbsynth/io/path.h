@@ -1,0 +1,13 @@
+#pragma once
+#include <string>
+
+namespace vdbsynth {
+
+/// Extension in lower case without its dot, empty if there is none.
+std::string extensionOf(const std::string& path);
+/// Last part of a path.
+std::string fileNameOf(const std::string& path);
+/// Folder of a path, "." if it names none.
+std::string folderOf(const std::string& path);
+
+} // namespace vdbsynth

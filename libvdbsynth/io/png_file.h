@@ -1,0 +1,18 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace vdbsynth {
+
+/// An 8-bit colour picture, rows from the top, three bytes a pixel.
+struct Picture {
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> pixels;  ///< [height x width x 3]
+};
+
+/// Writes a PNG without time stamps: the same picture gives the same bytes.
+/// @throw Error Io
+void writePng(const std::string& path, const Picture& picture);
+
+} // namespace vdbsynth

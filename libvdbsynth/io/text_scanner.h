@@ -1,0 +1,51 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace vdbsynth {
+
+/// Whole content of a file.
+/// @throw Error Io (missing, a directory, not readable)
+std::string readWholeFile(const std::string& path);
+
+/// Walks over the words and numbers of a text file in memory. Numbers are parsed without the locale;
+/// errors name the file and the line.
+class TextScanner {
+public:
+    /// Both are borrowed for the scanner's life.
+    TextScanner(const std::string& path, std::string_view text, char comment = '#');
+
+    /// True at the end of the text (comments and white space skipped).
+    bool atEnd();
+    /// Next word on this or a later line, empty at the end.
+    std::string_view word();
+    /// Next word on this line, empty if the line has no more.
+    std::string_view wordOnLine();
+    void skipLine();
+    /// @throw Error BadData (not a number, not finite, end of file)
+    float real();
+    std::int64_t whole();
+    std::size_t position() const { return mAt; }
+    std::size_t line() const;
+    /// @throw Error BadData "PATH:LINE: WHAT"
+    [[noreturn]] void fail(const std::string& what) const;
+
+private:
+    void skipSpace(bool acrossLines);
+
+    const std::string& mPath;
+    std::string_view mText;
+    std::size_t mAt = 0;
+    char mComment;
+};
+
+/// Parses a whole word as a number. @return false if it is not one.
+bool parseReal(std::string_view word, float& value);
+bool parseWhole(std::string_view word, std::int64_t& value);
+
+/// Appends the shortest decimal that reads back to the same float.
+void appendReal(std::string& text, float value);
+
+} // namespace vdbsynth

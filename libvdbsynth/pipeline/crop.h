@@ -1,0 +1,12 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/vdb/level_set.h"
+
+namespace vdbsynth {
+
+/// The part of a model inside an index box, capped half a voxel outside it, with the box as recorded domain.
+/// @throw Error EmptyInput (nothing in the box), Memory, Cancelled
+/// @par Repeats same bits for any number of threads
+LevelSet cropModel(const LevelSet& model, const IndexBox& box, const RunContext& ctx = {});
+
+} // namespace vdbsynth

@@ -1,0 +1,149 @@
+// The source map as grids of a VDB file, and back.
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/pipeline/synth.h"
+#include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/vdb_file.h"
+
+#include <openvdb/openvdb.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace vdbsynth {
+namespace {
+
+std::string key(const char* name) { return std::string("vdbsynth:map:") + name; }
+
+void putText(openvdb::GridBase& grid, const char* name, const std::string& value) { grid.insertMeta(key(name), openvdb::StringMetadata(value)); }
+
+std::string getText(const std::string& path, const openvdb::GridBase& grid, const char* name) {
+    const auto meta = grid.getMetadata<openvdb::StringMetadata>(key(name));
+    if (!meta) throw Error(ErrorCode::BadData, path + ": its source map has no " + key(name));
+    return meta->value();
+}
+
+int getWhole(const std::string& path, const openvdb::GridBase& grid, const char* name, int low, int high) {
+    const std::string text = getText(path, grid, name);
+    char* end = nullptr;
+    const long value = std::strtol(text.c_str(), &end, 10);
+    if (*end || text.empty() || value < low || value > high) throw Error(ErrorCode::BadData, path + ": its source map has a bad " + key(name) + " \"" + text + "\"");
+    return int(value);
+}
+
+double getReal(const std::string& path, const openvdb::GridBase& grid, const char* name) {
+    const std::string text = getText(path, grid, name);
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    if (*end || text.empty() || !(value > 0) || value > 1e30) throw Error(ErrorCode::BadData, path + ": its source map has a bad " + key(name) + " \"" + text + "\"");
+    return value;
+}
+
+IndexBox getBox(const std::string& path, const openvdb::GridBase& grid, const char* name) {
+    IndexBox box;
+    const std::string text = getText(path, grid, name);
+    if (!parseBox(text, box)) throw Error(ErrorCode::BadData, path + ": its source map has a bad " + key(name) + " \"" + text + "\"");
+    return box;
+}
+
+std::string exactText(double value) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.17g", value);
+    return text;
+}
+
+} // namespace
+
+std::vector<GridPtr> sourceMapGrids(const SourceMap& map, const openvdb::FloatGrid& result, const RunContext& ctx) {
+    Stage stage(ctx, "source map", 1);
+    auto votes = openvdb::Vec3IGrid::create(openvdb::Vec3i(0));
+    votes->setName("vote_source");
+    auto weights = openvdb::FloatGrid::create(0.f);
+    weights->setName("vote_weight");
+    auto voteAccessor = votes->getAccessor();
+    auto weightAccessor = weights->getAccessor();
+    const Index3 lattice = map.patches.lattice();
+    const Index3 shift = map.exemplarBox.min;
+    for (int a = 0; a < lattice.x; ++a)
+        for (int b = 0; b < lattice.y; ++b)
+            for (int c = 0; c < lattice.z; ++c) {
+                const Index3 source = map.patches.source[map.patches.index({a, b, c})] + shift;
+                voteAccessor.setValueOn(openvdb::Coord(a, b, c), openvdb::Vec3i(source.x, source.y, source.z));
+                weightAccessor.setValueOn(openvdb::Coord(a, b, c), 1.f);
+            }
+    putText(*votes, "format", "1");
+    putText(*votes, "patch", std::to_string(map.patches.block));
+    putText(*votes, "stride", std::to_string(map.patches.stride));
+    putText(*votes, "overhang", std::to_string(map.patches.overhang));
+    putText(*votes, "kernel", kVoteKernel);
+    std::string cut;
+    for (bool face : map.cut) cut += face ? '1' : '0';
+    putText(*votes, "cut", cut);
+    putText(*votes, "exemplar_box", boxText(map.exemplarBox));
+    putText(*votes, "target_box", boxText(map.targetBox));
+    putText(*votes, "target_domain", boxText(map.targetDomain));
+    putText(*votes, "band", exactText(double(map.band)));
+    putText(*votes, "half_width", exactText(double(map.halfWidth)));
+    putText(*votes, "voxel_size", exactText(map.voxelSize));
+    putText(*votes, "exemplar_hash", map.exemplarHash);
+
+    auto source = openvdb::Vec3IGrid::create(openvdb::Vec3i(0));
+    source->setName("source");
+    source->setTransform(result.transform().copy());
+    auto exemplar = openvdb::Int32Grid::create(0);
+    exemplar->setName("exemplar");
+    exemplar->setTransform(result.transform().copy());
+    auto sourceAccessor = source->getAccessor();
+    auto exemplarAccessor = exemplar->getAccessor();
+    for (auto it = result.cbeginValueOn(); it; ++it) {
+        const Index3 voxel = fromCoord(it.getCoord());
+        if (!map.targetDomain.contains(voxel)) continue;
+        const Index3 local = voxel - map.targetBox.min;
+        const Index3 l = strongestBlock(map.patches, local);
+        const std::size_t at = map.patches.index(l);
+        const Index3 origin{map.patches.origin(0, l.x), map.patches.origin(1, l.y), map.patches.origin(2, l.z)};
+        const Index3 from = map.patches.source[at] + local - origin + shift;
+        sourceAccessor.setValueOn(it.getCoord(), openvdb::Vec3i(from.x, from.y, from.z));
+        exemplarAccessor.setValueOn(it.getCoord(), map.patches.exemplar[at]);
+    }
+    stage.advance();
+    return {source, exemplar, votes, weights};
+}
+
+SourceMap readSourceMap(const std::string& path, const RunContext& ctx) {
+    const GridPtr grid = readVdbGrid(path, "vote_source", ctx);
+    const auto votes = openvdb::gridPtrCast<openvdb::Vec3IGrid>(grid);
+    if (!votes) throw Error(ErrorCode::BadData, path + ": grid \"vote_source\" is not a source map");
+    SourceMap map;
+    if (getText(path, *votes, "kernel") != kVoteKernel || getText(path, *votes, "format") != "1")
+        throw Error(ErrorCode::BadData, path + ": its source map was written by another version of vdb_synth; make it again");
+    map.patches.block = getWhole(path, *votes, "patch", 1, 65536);
+    map.patches.stride = getWhole(path, *votes, "stride", 1, map.patches.block);
+    map.patches.overhang = getWhole(path, *votes, "overhang", 0, 65536);
+    const std::string cut = getText(path, *votes, "cut");
+    if (cut.size() != 6) throw Error(ErrorCode::BadData, path + ": its source map has a bad " + key("cut"));
+    for (std::size_t face = 0; face < 6; ++face) map.cut[face] = cut[face] == '1';
+    map.exemplarBox = getBox(path, *votes, "exemplar_box");
+    map.targetBox = getBox(path, *votes, "target_box");
+    map.targetDomain = getBox(path, *votes, "target_domain");
+    map.band = float(getReal(path, *votes, "band"));
+    map.halfWidth = float(getReal(path, *votes, "half_width"));
+    map.voxelSize = getReal(path, *votes, "voxel_size");
+    map.exemplarHash = getText(path, *votes, "exemplar_hash");
+    map.patches.target = map.targetBox.size();
+    const Index3 lattice = map.patches.lattice();
+    const std::uint64_t blocks = std::uint64_t(lattice.x) * std::uint64_t(lattice.y) * std::uint64_t(lattice.z);
+    if (votes->activeVoxelCount() != blocks) throw Error(ErrorCode::BadData, path + ": its source map has " + std::to_string(votes->activeVoxelCount()) + " blocks where " + std::to_string(blocks) + " belong");
+    map.patches.allocate();
+    const IndexBox room = {map.exemplarBox.min, map.exemplarBox.max};
+    for (auto it = votes->cbeginValueOn(); it; ++it) {
+        const Index3 l = fromCoord(it.getCoord());
+        const Index3 source{(*it).x(), (*it).y(), (*it).z()};
+        if (!it.isVoxelValue() || l.x < 0 || l.y < 0 || l.z < 0 || l.x >= lattice.x || l.y >= lattice.y || l.z >= lattice.z || !room.contains(source))
+            throw Error(ErrorCode::BadData, path + ": its source map points outside the exemplar");
+        map.patches.source[map.patches.index(l)] = source - map.exemplarBox.min;
+    }
+    return map;
+}
+
+} // namespace vdbsynth

@@ -1,0 +1,27 @@
+#pragma once
+#include "libvdbsynth/procedural/exemplar.h"
+#include "libvdbsynth/procedural/primitives.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace vdbsynth {
+
+/// What one kind needs to know. `box` is the domain grown by the margin.
+struct ExemplarRequest {
+    IndexBox domain, box;
+    double feature = 16;
+    std::uint64_t seed = 0;
+};
+
+// One function a kind, each in its own file where it is more than a list of primitives.
+std::vector<Primitive> ballsPrimitives(const ExemplarRequest& request, const RunContext& ctx);
+std::vector<Primitive> gridPrimitives(const ExemplarRequest& request);
+std::vector<Primitive> chainmailPrimitives(const ExemplarRequest& request);
+std::vector<Primitive> fibresPrimitives(const ExemplarRequest& request);
+std::vector<Primitive> weavePrimitives(const ExemplarRequest& request);
+BrickField foamField(const ExemplarRequest& request, const RunContext& ctx);
+BrickField spongeField(const ExemplarRequest& request, const RunContext& ctx);
+BrickField terrainField(const ExemplarRequest& request, const RunContext& ctx);
+
+} // namespace vdbsynth

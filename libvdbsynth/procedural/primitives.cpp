@@ -1,0 +1,98 @@
+#include "libvdbsynth/procedural/primitives.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vdbsynth {
+namespace {
+
+constexpr int kSide = BrickField::kSide;
+constexpr int kCell = 32;  // bins of the look-up, in voxels
+
+// Primitives by the coarse cells that their grown bounds touch.
+class Bins {
+public:
+    Bins(const std::vector<Primitive>& primitives, const IndexBox& box, double reach) : mBox(box) {
+        const Index3 size = box.size();
+        mCells = {(size.x + kCell - 1) / kCell, (size.y + kCell - 1) / kCell, (size.z + kCell - 1) / kCell};
+        mLists.resize(std::size_t(mCells.x) * std::size_t(mCells.y) * std::size_t(mCells.z));
+        for (std::uint32_t i = 0; i < primitives.size(); ++i) {
+            Vec3d centre;
+            double radius;
+            primitives[i].bound(centre, radius);
+            Index3 low, high;
+            for (int axis = 0; axis < 3; ++axis) {
+                low[axis] = std::max(0, int(std::floor((centre[axis] - radius - reach - box.min[axis]) / kCell)));
+                high[axis] = std::min(mCells[axis] - 1, int(std::floor((centre[axis] + radius + reach - box.min[axis]) / kCell)));
+            }
+            for (int x = low.x; x <= high.x; ++x)
+                for (int y = low.y; y <= high.y; ++y)
+                    for (int z = low.z; z <= high.z; ++z) mLists[index({x, y, z})].push_back(i);
+        }
+    }
+    // kCell is a multiple of the brick's side, so a brick lies in one cell.
+    const std::vector<std::uint32_t>& near(const Index3& corner) const {
+        const Index3 local = corner - mBox.min;
+        return mLists[index({local.x / kCell, local.y / kCell, local.z / kCell})];
+    }
+
+private:
+    std::size_t index(const Index3& c) const {
+        return (std::size_t(c.x) * std::size_t(mCells.y) + std::size_t(c.y)) * std::size_t(mCells.z) + std::size_t(c.z);
+    }
+    IndexBox mBox;
+    Index3 mCells;
+    std::vector<std::vector<std::uint32_t>> mLists;
+};
+
+} // namespace
+
+double Primitive::distance(const Vec3d& p) const {
+    if (kind == Kind::Torus) {
+        const Vec3d offset = p - a;
+        const double along = dot(offset, b);
+        const double across = length(offset - b * along) - ring;
+        return std::sqrt(across * across + along * along) - radius;
+    }
+    const Vec3d ab = b - a;
+    const double squared = dot(ab, ab);
+    const double t = squared > 0 ? std::clamp(dot(p - a, ab) / squared, 0.0, 1.0) : 0.0;
+    return length(p - (a + ab * t)) - radius;
+}
+
+void Primitive::bound(Vec3d& centre, double& boundRadius) const {
+    if (kind == Kind::Torus) {
+        centre = a;
+        boundRadius = ring + radius;
+    } else {
+        centre = (a + b) * 0.5;
+        boundRadius = length(b - a) * 0.5 + radius;
+    }
+}
+
+Primitive ball(const Vec3d& centre, double radius) { return {Primitive::Kind::Capsule, centre, centre, radius, 0}; }
+Primitive capsule(const Vec3d& a, const Vec3d& b, double radius) { return {Primitive::Kind::Capsule, a, b, radius, 0}; }
+Primitive torus(const Vec3d& centre, const Vec3d& axis, double ring, double tube) {
+    return {Primitive::Kind::Torus, centre, normalized(axis), tube, ring};
+}
+
+BrickField unionField(const std::vector<Primitive>& primitives, const IndexBox& box, float limit, const RunContext& ctx) {
+    const Bins bins(primitives, box, double(limit));
+    return BrickField::generate(box, ctx, [&](const IndexBox& brick, float* samples) {
+        const Vec3d middle{brick.min.x + 3.5, brick.min.y + 3.5, brick.min.z + 3.5};
+        const double reach = 3.5 * 1.7320508075688772 + double(limit);
+        std::vector<const Primitive*> near;
+        for (std::uint32_t i : bins.near(brick.min))
+            if (primitives[i].distance(middle) < reach) near.push_back(&primitives[i]);
+        for (int x = 0; x < kSide; ++x)
+            for (int y = 0; y < kSide; ++y)
+                for (int z = 0; z < kSide; ++z) {
+                    const Vec3d p{double(brick.min.x + x), double(brick.min.y + y), double(brick.min.z + z)};
+                    double nearest = double(limit);
+                    for (const Primitive* primitive : near) nearest = std::min(nearest, primitive->distance(p));
+                    *samples++ = float(std::max(nearest, -double(limit)));
+                }
+    });
+}
+
+} // namespace vdbsynth

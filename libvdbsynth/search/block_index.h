@@ -1,0 +1,83 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/grid/brick_field.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace vdbsynth {
+
+/// A block to look for. All pointers are borrowed for the call.
+struct BlockQuery {
+    const float* samples = nullptr;        ///< [N x N x N], z fastest, in the exemplar's unit
+    const std::uint8_t* known = nullptr;   ///< [N x N x N] nonzero where samples count; null: everywhere
+    IndexBox candidates;                   ///< where the match's minimum corner may lie; empty: anywhere
+    std::vector<Index3> hints;             ///< places worth trying first; they change the time, never the answer
+};
+
+struct BlockMatch {
+    Index3 position;  ///< minimum corner of the block in the exemplar
+    double cost = 0;  ///< blockCost
+};
+
+/// What a search did, summed over calls by the caller.
+struct BlockSearchCounts {
+    std::uint64_t groups = 0;    ///< groups of positions opened
+    std::uint64_t nodes = 0;     ///< bounds computed for single nodes
+    std::uint64_t exact = 0;     ///< full costs computed
+};
+
+struct BlockIndexOptions {
+    int block = 16;                    ///< N, side of the blocks [voxels], 4..256
+    const BrickField* mask = nullptr;  ///< a block counts only if the mask is 1 in all of it; null: all blocks; same box as the exemplar
+};
+
+/// Exact best-match search over all blocks of a sparse field: the search tree of [lagae2004, section 4].
+/// A node's bound is its distance at a level of the block pyramid, never above the distance at a finer one
+/// (Eq. 2); nodes are opened best first; the first leaf to reach the front is the best match. Here
+///  - levels are means over cubes of N/2, N/4 ... samples, any N; under a query's mask a cube counts only if it
+///    is wholly known, and whatever the cubes leave out counts as 0, so bounds hold for any mask;
+///  - blocks with identical samples are one node (all constant regions of one value are one node);
+///  - the parent of partly identical nodes is a group of neighbouring positions with the range of each mean,
+///    which bounds all of them at once;
+///  - the leaf's cost is blockCost over float samples, bounds carry a margin for rounding.
+class BlockIndex {
+public:
+    /// @param exemplar  box begins at 0; kept alive and shared
+    /// @throw Error InvalidOption (--block out of range), Unusable (block larger than the exemplar, no
+    ///              block inside the mask), Memory, Cancelled
+    /// @par Cost    time O(positions that are not constant * N), memory about 20 bytes a sample of those
+    /// @par Repeats same bits for any number of threads
+    static BlockIndex build(std::shared_ptr<const BrickField> exemplar, const BlockIndexOptions& options, const RunContext& ctx = {});
+
+    BlockIndex(BlockIndex&&) noexcept;
+    BlockIndex& operator=(BlockIndex&&) noexcept;
+    ~BlockIndex();
+
+    /// The `count` best blocks, by (cost, x, y, z). Fewer where fewer are eligible; a query without any known
+    /// sample costs 0 everywhere. May be called from many threads at once.
+    /// @throw Error InvalidOption (count under 1)
+    /// @par Repeats yes; the answer equals matchBlocksLinearly's
+    std::vector<BlockMatch> match(const BlockQuery& query, int count = 1, BlockSearchCounts* counts = nullptr) const;
+
+    int block() const;
+    const BrickField& exemplar() const;
+    /// Box of all block positions.
+    const IndexBox& positions() const;
+    std::size_t memoryBytes() const;
+    /// Number of distinct blocks, after identical ones became one node.
+    std::size_t nodeCount() const;
+
+private:
+    struct Impl;
+    explicit BlockIndex(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> mImpl;
+};
+
+/// The oracle: the same answer by a scan over all positions.
+std::vector<BlockMatch> matchBlocksLinearly(const BrickField& exemplar, int block, const BlockQuery& query, int count = 1,
+                                            const BrickField* mask = nullptr);
+
+} // namespace vdbsynth

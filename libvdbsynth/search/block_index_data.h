@@ -1,0 +1,65 @@
+#pragma once
+#include "libvdbsynth/search/block_index.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace vdbsynth {
+
+/// A run of nodes whose positions are neighbours, with the range of each of their eight coarsest means.
+struct BlockGroup {
+    IndexBox box;                    // of the nodes' first positions
+    std::uint32_t first = 0, last = 0;  // nodes
+    bool shared = false;             // some node stands for several positions, which may lie anywhere
+    std::array<float, 8> low, high;
+};
+
+/// The search tree as flat arrays, read by block_index.cpp and built by block_index_build.cpp.
+struct BlockIndexData {
+    std::shared_ptr<const BrickField> exemplar;
+    std::shared_ptr<const BrickField> maskMeans;  // mean of the mask over each block; null: all blocks count
+    int block = 0;
+    float largest = 0;                       // largest |sample|
+    IndexBox positions;                      // of block minimum corners
+    std::vector<int> cells;                  // sides of the means' cubes, coarse to fine
+    std::vector<BrickField> means;           // one field a level
+    std::vector<BlockGroup> groups;
+    std::vector<std::uint64_t> nodes;        // first position of each node, as its number in `positions`
+    std::vector<std::uint32_t> memberBegin;  // [nodes + 1] into members
+    std::vector<std::uint64_t> members;      // further positions of shared nodes, ascending
+
+    Index3 positionOf(std::uint64_t number) const {
+        const std::uint64_t ny = std::uint64_t(positions.size().y), nz = std::uint64_t(positions.size().z);
+        return {int(number / nz / ny), int(number / nz % ny), int(number % nz)};
+    }
+    std::uint64_t numberOf(const Index3& p) const {
+        return (std::uint64_t(p.x) * std::uint64_t(positions.size().y) + std::uint64_t(p.y)) * std::uint64_t(positions.size().z) + std::uint64_t(p.z);
+    }
+    Index3 position(std::uint32_t node) const { return positionOf(nodes[node]); }
+    bool isShared(std::uint32_t node) const { return memberBegin[node] != memberBegin[node + 1]; }
+    bool eligible(const Index3& p) const;
+    std::size_t nodeCount() const { return nodes.size(); }
+    std::size_t memoryBytes() const;
+
+    /// Calls visit(position) for the node's positions inside `box`, ascending, until it returns false.
+    template <typename Visit>
+    void forMembers(std::uint32_t node, const IndexBox& box, Visit&& visit) const {
+        const Index3 first = position(node);
+        if (box.contains(first) && !visit(first)) return;
+        const auto begin = members.begin() + std::ptrdiff_t(memberBegin[node]), end = members.begin() + std::ptrdiff_t(memberBegin[node + 1]);
+        const std::uint64_t last = numberOf(box.max);
+        for (auto m = std::lower_bound(begin, end, numberOf(box.min)); m != end && *m <= last; ++m) {
+            const Index3 p = positionOf(*m);
+            if (box.contains(p) && !visit(p)) return;
+        }
+    }
+};
+
+/// Box of all minimum corners of blocks inside a field. @throw Error Unusable (block larger than the field)
+IndexBox blockPositions(const BrickField& exemplar, int block);
+bool blockInsideMask(const BrickField& mask, const Index3& corner, int block);
+BlockIndexData buildBlockIndexData(std::shared_ptr<const BrickField> exemplar, const BlockIndexOptions& options, const RunContext& ctx);
+
+} // namespace vdbsynth

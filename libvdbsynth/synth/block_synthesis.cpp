@@ -1,0 +1,324 @@
+#include "libvdbsynth/synth/block_synthesis.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/base/random.h"
+#include "libvdbsynth/grid/pyramid.h"
+#include "libvdbsynth/search/block_index.h"
+
+#include <algorithm>
+#include <string>
+
+namespace vdbsynth {
+namespace {
+
+constexpr std::uint32_t kFirstBlockPurpose = 0x66697273;
+using Fields = std::vector<std::shared_ptr<const BrickField>>;
+
+int halfOf(int n) { return (n + 1) / 2; }
+Index3 halfOf(const Index3& n) { return {halfOf(n.x), halfOf(n.y), halfOf(n.z)}; }
+
+// The longest block that leaves the search a choice along every axis of an exemplar.
+int longestBlock(const Index3& exemplar, const Index3& target, const std::array<Border, 3>& border) {
+    int longest = 256;
+    for (int axis = 0; axis < 3; ++axis) {
+        const bool grows = exemplar[axis] != target[axis];
+        longest = std::min(longest, !grows ? exemplar[axis] : border[std::size_t(axis)] == Border::Object ? exemplar[axis] / 4 : exemplar[axis] / 2);
+    }
+    return longest;
+}
+
+struct Pass {
+    Fields exemplars;
+    Index3 target;
+    int block = 0;
+    int scale = 1;  // voxels of the last pass in one of this
+};
+
+class Synthesis {
+public:
+    Synthesis(const BlockSynthesisOptions& options, const RunContext& ctx) : mOptions(options), mContext(ctx) {}
+
+    // Runs one pass. `coarse`: the result and map of the pass before, null for the first.
+    void run(const Pass& pass, const BrickField* coarse, const PatchMap* coarseMap, const BrickField* mask,
+             BrickField& field, PatchMap& map, const std::string& name) {
+        BlockIndexOptions indexOptions;
+        indexOptions.block = pass.block;
+        indexOptions.mask = mask;
+        Stage stage(mContext, name, 1);
+        std::vector<BlockIndex> indices;
+        for (const auto& exemplar : pass.exemplars) indices.push_back(BlockIndex::build(exemplar, indexOptions, mContext));
+        std::uint64_t bytes = 0;
+        for (const BlockIndex& index : indices) bytes += index.memoryBytes();
+        mStats.indexBytes = std::max(mStats.indexBytes, bytes);
+        map.target = pass.target;
+        map.block = pass.block;
+        map.stride = pass.block / 2;
+        map.overhang = 0;
+        map.allocate();
+        field = coarse ? doubled(*coarse, pass.target, mContext) : BrickField(IndexBox::fromSize(pass.target), 0.f);
+        walk(pass, indices, coarse != nullptr, coarseMap, field, map, name);
+    }
+
+    BlockSynthesisStats takeStats() const { return mStats; }
+
+private:
+    struct Found {
+        BlockMatch match;
+        std::int32_t exemplar = 0;
+        BlockSearchCounts counts;
+    };
+
+    void walk(const Pass& pass, const std::vector<BlockIndex>& indices, bool seeded, const PatchMap* coarseMap,
+              BrickField& field, PatchMap& map, const std::string& name) {
+        const Index3 lattice = map.lattice();
+        Stage stage(mContext, name, std::size_t(lattice.x) * std::size_t(lattice.y) * std::size_t(lattice.z));
+        double costs = 0;
+        for (int wave = 0; wave <= lattice.x + lattice.y + lattice.z - 3; ++wave) {
+            std::vector<Index3> blocks;
+            for (int a = 0; a < lattice.x; ++a)
+                for (int b = 0; b < lattice.y; ++b) {
+                    const int c = wave - a - b;
+                    if (c >= 0 && c < lattice.z) blocks.push_back({a, b, c});
+                }
+            std::vector<Found> found(blocks.size());
+            parallelFor(mContext, blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i) found[i] = matchOne(pass, indices, seeded, coarseMap, field, map, blocks[i]);
+            });
+            for (std::size_t i = 0; i < blocks.size(); ++i) {
+                copyOpen(pass, map, blocks[i], found[i], field);
+                costs += found[i].match.cost;
+                mStats.nodes += found[i].counts.nodes;
+                mStats.exact += found[i].counts.exact;
+            }
+            mStats.matches += blocks.size();
+            stage.advance(blocks.size());
+        }
+        mStats.meanCost = costs / double(map.source.size());
+    }
+
+    // Samples that this block is the first to cover, in lattice order.
+    std::vector<std::uint8_t> openSamples(const PatchMap& map, const Index3& l) const {
+        const int n = map.block;
+        std::array<std::vector<std::uint8_t>, 3> open;
+        for (int axis = 0; axis < 3; ++axis) {
+            const int covered = l[axis] == 0 ? 0 : map.origin(axis, l[axis] - 1) + n - map.origin(axis, l[axis]);
+            open[std::size_t(axis)].assign(std::size_t(n), 0);
+            for (int i = std::max(covered, 0); i < n; ++i) open[std::size_t(axis)][std::size_t(i)] = 1;
+        }
+        std::vector<std::uint8_t> samples(std::size_t(n) * std::size_t(n) * std::size_t(n));
+        std::size_t s = 0;
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j)
+                for (int k = 0; k < n; ++k) samples[s++] = open[0][std::size_t(i)] & open[1][std::size_t(j)] & open[2][std::size_t(k)];
+        return samples;
+    }
+
+    // Where the source of a block may begin.
+    IndexBox candidatesFor(const Pass& pass, const BlockIndex& index, const Index3& origin) const {
+        IndexBox box = index.positions();
+        const Index3 size = index.exemplar().box().size();
+        const int n = pass.block;
+        for (int axis = 0; axis < 3; ++axis) {
+            const int at = origin[axis], length = size[axis], target = pass.target[axis];
+            int low = 0, high = length - n;
+            if (length == target) {
+                const int drift = mOptions.drift / pass.scale;
+                low = at - drift;
+                high = at + drift;
+            } else if (mOptions.border[std::size_t(axis)] == Border::Object) {
+                if (at < n) low = high = at;
+                else if (at + n > target - n) low = high = length - (target - at);
+                else { low = n; high = length - 2 * n; }
+            }
+            box.min[axis] = std::max(box.min[axis], low);
+            box.max[axis] = std::min(box.max[axis], high);
+        }
+        return box;
+    }
+
+    Found matchOne(const Pass& pass, const std::vector<BlockIndex>& indices, bool seeded, const PatchMap* coarseMap,
+                   const BrickField& field, const PatchMap& map, const Index3& l) const {
+        const int n = pass.block;
+        const Index3 origin{map.origin(0, l.x), map.origin(1, l.y), map.origin(2, l.z)};
+        std::vector<float> samples(std::size_t(n) * std::size_t(n) * std::size_t(n));
+        field.readBox(origin, {n, n, n}, samples.data());
+        std::vector<std::uint8_t> known;
+        if (!seeded) {
+            known = openSamples(map, l);
+            for (std::uint8_t& k : known) k = !k;
+        }
+        Found best;
+        bool any = false;
+        for (std::size_t e = 0; e < indices.size(); ++e) {
+            BlockQuery query;
+            query.samples = samples.data();
+            query.known = seeded ? nullptr : known.data();
+            query.candidates = candidatesFor(pass, indices[e], origin);
+            if (query.candidates.empty()) continue;
+            if (!seeded && l == Index3{0, 0, 0}) {
+                if (e == 0 && drawFirst(indices[e], query, best)) return best;
+                continue;
+            }
+            addHints(map, coarseMap, l, std::int32_t(e), query.hints);
+            const std::vector<BlockMatch> matches = indices[e].match(query, 1, &best.counts);
+            if (matches.empty() || (any && best.match.cost <= matches.front().cost)) continue;
+            best.match = matches.front();
+            best.exemplar = std::int32_t(e);
+            any = true;
+        }
+        if (!any) throw Error(ErrorCode::Unusable, "no eligible source for the block at " + std::to_string(origin.x) + "," + std::to_string(origin.y) + "," +
+                                  std::to_string(origin.z) + "; widen --exemplar-mask or raise --drift");
+        return best;
+    }
+
+    // The first block of all: any eligible one, by the seed.
+    bool drawFirst(const BlockIndex& index, const BlockQuery& query, Found& found) const {
+        for (std::uint64_t attempt = 0; attempt < 256; ++attempt) {
+            Random random(mContext.seed, attempt, kFirstBlockPurpose);
+            BlockQuery drawn = query;
+            for (int axis = 0; axis < 3; ++axis) {
+                const std::uint32_t room = std::uint32_t(query.candidates.size()[axis]);
+                drawn.candidates.min[axis] = drawn.candidates.max[axis] = query.candidates.min[axis] + int(random.below(room));
+            }
+            const std::vector<BlockMatch> matches = index.match(drawn, 1, &found.counts);
+            if (matches.empty()) continue;  // outside the mask
+            found.match = matches.front();
+            found.exemplar = 0;
+            return true;
+        }
+        const std::vector<BlockMatch> matches = index.match(query, 1, &found.counts);
+        if (!matches.empty()) found.match = matches.front();
+        return !matches.empty();
+    }
+
+    // Where the neighbours' sources and the coarser pass would go on.
+    void addHints(const PatchMap& map, const PatchMap* coarseMap, const Index3& l, std::int32_t exemplar, std::vector<Index3>& hints) const {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (l[axis] == 0) continue;
+            Index3 before = l;
+            --before[axis];
+            const std::size_t b = map.index(before);
+            if (map.exemplar[b] != exemplar) continue;
+            Index3 hint = map.source[b];
+            hint[axis] += map.origin(axis, l[axis]) - map.origin(axis, before[axis]);
+            hints.push_back(hint);
+        }
+        if (!coarseMap) return;
+        Index3 origin, middle;
+        for (int axis = 0; axis < 3; ++axis) {
+            origin[axis] = map.origin(axis, l[axis]);
+            middle[axis] = std::min((origin[axis] + map.block / 2) / 2, coarseMap->target[axis] - 1);
+        }
+        const Index3 strongest = strongestBlock(*coarseMap, middle);
+        const std::size_t b = coarseMap->index(strongest);
+        if (coarseMap->exemplar[b] != exemplar) return;
+        Index3 hint;
+        for (int axis = 0; axis < 3; ++axis) hint[axis] = origin[axis] + 2 * (coarseMap->source[b][axis] - coarseMap->origin(axis, strongest[axis]));
+        hints.push_back(hint);
+    }
+
+    void copyOpen(const Pass& pass, PatchMap& map, const Index3& l, const Found& found, BrickField& field) const {
+        const int n = pass.block;
+        const std::size_t at = map.index(l);
+        map.source[at] = found.match.position;
+        map.exemplar[at] = found.exemplar;
+        std::vector<float> samples(std::size_t(n) * std::size_t(n) * std::size_t(n));
+        pass.exemplars[std::size_t(found.exemplar)]->readBox(found.match.position, {n, n, n}, samples.data());
+        const std::vector<std::uint8_t> open = openSamples(map, l);
+        field.writeBox({map.origin(0, l.x), map.origin(1, l.y), map.origin(2, l.z)}, {n, n, n}, samples.data(), open.data());
+    }
+
+    const BlockSynthesisOptions& mOptions;
+    const RunContext& mContext;
+    BlockSynthesisStats mStats;
+};
+
+// The passes, finest first; coarser ones end where a block would fall under four samples.
+std::vector<Pass> planPasses(const Fields& exemplars, const BlockSynthesisOptions& options, int block, const RunContext& ctx) {
+    std::vector<Pass> passes{{exemplars, options.size, block, 1}};
+    const int levels = options.levels > 0 ? options.levels : 3;
+    while (int(passes.size()) < levels) {
+        Pass coarse;
+        coarse.target = halfOf(passes.back().target);
+        coarse.scale = passes.back().scale * 2;
+        coarse.block = block;
+        for (const auto& exemplar : passes.back().exemplars) {
+            const Index3 size = halfOf(exemplar->box().size());
+            coarse.block = std::min(coarse.block, longestBlock(size, coarse.target, options.border) / 2 * 2);
+        }
+        if (coarse.block < 4) break;
+        for (const auto& exemplar : passes.back().exemplars) coarse.exemplars.push_back(std::make_shared<BrickField>(halved(*exemplar, ctx)));
+        passes.push_back(coarse);
+    }
+    if (options.levels > int(passes.size()))
+        message(ctx, MessageLevel::Note, "--levels " + std::to_string(options.levels) + ": the exemplar is large enough for " + std::to_string(passes.size()) + "; using those");
+    return passes;
+}
+
+void validate(const Fields& exemplars, const BlockSynthesisOptions& options) {
+    if (exemplars.empty()) throw Error(ErrorCode::InvalidOption, "synthesis needs at least one exemplar");
+    const std::string size = std::to_string(options.size.x) + "," + std::to_string(options.size.y) + "," + std::to_string(options.size.z);
+    for (int axis = 0; axis < 3; ++axis) requireOption(options.size[axis] >= 4 && options.size[axis] <= 1 << 20, "size", size, "from 4 to 1048576 voxels along each axis");
+    requireOption(options.block == 0 || (options.block >= 4 && options.block <= 256), "block", std::to_string(options.block), "a whole number from 4 to 256");
+    requireOption(options.levels >= 0 && options.levels <= 8, "levels", std::to_string(options.levels), "a whole number from 1 to 8");
+    requireOption(options.drift >= 0, "drift", std::to_string(options.drift), "at least 0 voxels");
+    for (const auto& exemplar : exemplars)
+        for (int axis = 0; axis < 3; ++axis) {
+            const int length = exemplar->box().size()[axis];
+            if (options.size[axis] < length)
+                throw Error(ErrorCode::InvalidOption, "--size " + size + ": smaller than the exemplar's domain along " + char('x' + axis) + " (" + std::to_string(length) + " voxels); give at least that, or 1x");
+            if (options.block > length)
+                throw Error(ErrorCode::Unusable, "--block " + std::to_string(options.block) + ": larger than the exemplar, which has " + std::to_string(length) + " voxels along " + char('x' + axis));
+            if (options.block > 0 && options.size[axis] != length && options.border[std::size_t(axis)] == Border::Object && options.block * 4 > length)
+                throw Error(ErrorCode::Unusable, "--block " + std::to_string(options.block) + ": an object border needs an exemplar of four blocks along " + char('x' + axis) + ", it has " + std::to_string(length) + " voxels");
+        }
+}
+
+} // namespace
+
+int deriveBlock(const Index3& exemplar, const BlockSynthesisOptions& options) {
+    const int block = std::min(16, longestBlock(exemplar, options.size, options.border) / 2 * 2);
+    if (block < 4)
+        throw Error(ErrorCode::Unusable, "the exemplar's domain of " + std::to_string(exemplar.x) + " x " + std::to_string(exemplar.y) + " x " + std::to_string(exemplar.z) +
+                        " voxels is too small for blocks of 4; use smaller voxels or a larger --exemplar-box");
+    return block;
+}
+
+BlockSynthesisResult synthesizeBlocks(const Fields& exemplars, const BlockSynthesisOptions& options, const RunContext& ctx) {
+    validate(exemplars, options);
+    int block = options.block;
+    if (block == 0) {
+        block = 256;
+        for (const auto& exemplar : exemplars) block = std::min(block, deriveBlock(exemplar->box().size(), options));
+    }
+    const std::vector<Pass> passes = planPasses(exemplars, options, block, ctx);
+    std::vector<BrickField> masks;
+    if (options.mask) {
+        masks.push_back(*options.mask);
+        // A coarse sample is a source only if all of its fine samples are.
+        while (masks.size() < passes.size()) masks.push_back(halved(masks.back(), ctx));
+    }
+    const std::size_t last = options.draft && passes.size() > 1 ? 1 : 0;
+    Synthesis synthesis(options, ctx);
+    BlockSynthesisResult result;
+    BrickField coarse;
+    PatchMap coarseMap;
+    for (std::size_t p = passes.size(); p-- > last;) {
+        BrickField field;
+        PatchMap map;
+        const bool first = p + 1 == passes.size();
+        synthesis.run(passes[p], first ? nullptr : &coarse, first ? nullptr : &coarseMap, masks.empty() ? nullptr : &masks[p], field, map,
+                      "synthesis pass " + std::to_string(passes.size() - p) + " of " + std::to_string(passes.size() - last));
+        coarse = std::move(field);
+        coarseMap = std::move(map);
+    }
+    result.map = last == 0 ? std::move(coarseMap) : coarseMap.scaled(2, options.size);
+    result.field = voteThroughMap(result.map, exemplars, ctx);
+    result.stats = synthesis.takeStats();
+    result.stats.block = result.map.block;
+    result.stats.levels = int(passes.size());
+    return result;
+}
+
+} // namespace vdbsynth

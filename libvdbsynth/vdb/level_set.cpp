@@ -1,0 +1,152 @@
+#include "libvdbsynth/vdb/level_set.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/hash.h"
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/vdb/coord.h"
+
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+namespace vdbsynth {
+namespace {
+
+using Leaf = openvdb::FloatTree::LeafNodeType;
+
+std::vector<const Leaf*> leavesOf(const openvdb::FloatGrid& grid) {
+    std::vector<const Leaf*> leaves;
+    leaves.reserve(grid.tree().leafCount());
+    grid.tree().getNodes(leaves);
+    return leaves;
+}
+
+} // namespace
+
+std::string boxText(const IndexBox& box) {
+    std::ostringstream text;
+    text << box.min.x << ',' << box.min.y << ',' << box.min.z << ',' << box.max.x << ',' << box.max.y << ',' << box.max.z;
+    return text.str();
+}
+
+bool parseBox(const std::string& text, IndexBox& box) {
+    int used = 0;
+    IndexBox parsed;
+    if (std::sscanf(text.c_str(), "%d,%d,%d,%d,%d,%d%n", &parsed.min.x, &parsed.min.y, &parsed.min.z, &parsed.max.x,
+                    &parsed.max.y, &parsed.max.z, &used) != 6) return false;
+    constexpr int kLimit = 1 << 28;
+    for (int axis = 0; axis < 3; ++axis)
+        if (parsed.min[axis] < -kLimit || parsed.max[axis] > kLimit) return false;
+    if (std::size_t(used) != text.size() || parsed.empty()) return false;
+    box = parsed;
+    return true;
+}
+
+double voxelSizeOf(const openvdb::FloatGrid& grid) { return grid.voxelSize()[0]; }
+
+IndexBox solidBox(const openvdb::FloatGrid& grid, const std::string& what) {
+    openvdb::CoordBBox box;
+    for (const Leaf* leaf : leavesOf(grid))
+        for (openvdb::Index n = 0; n < Leaf::SIZE; ++n)
+            if (leaf->getValue(n) < 0) box.expand(leaf->offsetToGlobalCoord(n));
+    openvdb::FloatTree::ValueAllCIter tile = grid.tree().cbeginValueAll();
+    tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile)
+        if (*tile < 0) box.expand(tile.getBoundingBox());
+    if (box.empty()) throw Error(ErrorCode::EmptyInput, what + ": has no inside; a solid is needed");
+    return fromBBox(box);
+}
+
+double solidVoxels(const openvdb::FloatGrid& grid) {
+    double count = 0;
+    for (const Leaf* leaf : leavesOf(grid))
+        for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) count += leaf->getValue(n) < 0 ? 1 : 0;
+    openvdb::FloatTree::ValueAllCIter tile = grid.tree().cbeginValueAll();
+    tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile)
+        if (*tile < 0) count += double(tile.getBoundingBox().volume());
+    return count;
+}
+
+FloatGridPtr inIndexSpace(const openvdb::FloatGrid& grid) {
+    openvdb::FloatGrid::Ptr copy = openvdb::ConstPtrCast<openvdb::FloatGrid>(grid.copyWithNewTree());
+    copy->setTree(openvdb::ConstPtrCast<openvdb::FloatTree>(grid.treePtr()));
+    copy->setTransform(openvdb::math::Transform::createLinearTransform(1.0));
+    return copy;
+}
+
+double halfWidthOf(const openvdb::FloatGrid& grid) { return double(grid.background()) / voxelSizeOf(grid); }
+
+std::size_t activeVoxels(const openvdb::FloatGrid& grid) { return grid.activeVoxelCount(); }
+
+void stampLevelSet(LevelSet& levelSet) {
+    levelSet.grid->setName(kSurfaceName);
+    levelSet.grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    levelSet.grid->removeMeta(kDomainKey);
+    if (levelSet.domainRecorded)
+        levelSet.grid->insertMeta(kDomainKey, openvdb::StringMetadata(boxText(levelSet.domain)));
+}
+
+std::string levelSetHash(const openvdb::FloatGrid& grid) {
+    std::uint64_t hash[2] = {1, 2};
+    for (const Leaf* leaf : leavesOf(grid)) {
+        const openvdb::Coord origin = leaf->origin();
+        for (std::uint64_t& h : hash) {
+            h = hash64(&origin, sizeof origin, h);
+            h = hash64(leaf->buffer().data(), Leaf::SIZE * sizeof(float), h);
+        }
+    }
+    const openvdb::Mat4d matrix = grid.transform().baseMap()->getAffineMap()->getMat4();
+    for (std::uint64_t& h : hash) h = hash64(matrix.asPointer(), 16 * sizeof(double), h);
+    char text[33];
+    std::snprintf(text, sizeof text, "%016llx%016llx", static_cast<unsigned long long>(hash[0]), static_cast<unsigned long long>(hash[1]));
+    return text;
+}
+
+BandQuality measureBand(const openvdb::FloatGrid& grid, const RunContext& ctx) {
+    const std::vector<const Leaf*> leaves = leavesOf(grid);
+    const float voxel = float(voxelSizeOf(grid));
+    std::vector<std::vector<float>> errors(leaves.size());
+    std::vector<std::size_t> missing(leaves.size(), 0);
+    std::vector<char> finite(leaves.size(), 1);
+    parallelFor(ctx, leaves.size(), 32, [&](std::size_t begin, std::size_t end) {
+        const openvdb::FloatGrid::ConstAccessor accessor = grid.getConstAccessor();
+        for (std::size_t i = begin; i < end; ++i)
+            for (auto it = leaves[i]->cbeginValueOn(); it; ++it) {
+                if (!std::isfinite(*it)) finite[i] = 0;
+                if (std::abs(*it) >= voxel) continue;
+                float squared = 0;
+                bool complete = true;
+                for (int axis = 0; axis < 3; ++axis) {
+                    openvdb::Coord low = it.getCoord(), high = it.getCoord();
+                    --low[axis];
+                    ++high[axis];
+                    complete = complete && accessor.isValueOn(low) && accessor.isValueOn(high);
+                    const float d = (accessor.getValue(high) - accessor.getValue(low)) / (2 * voxel);
+                    squared += d * d;
+                }
+                if (complete) errors[i].push_back(std::abs(std::sqrt(squared) - 1));
+                else ++missing[i];
+            }
+    });
+    BandQuality quality;
+    std::vector<float> all;
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+        all.insert(all.end(), errors[i].begin(), errors[i].end());
+        quality.missingNeighbours += missing[i];
+        quality.finite = quality.finite && finite[i];
+    }
+    quality.measured = all.size();
+    if (all.empty()) return quality;
+    for (float error : all) quality.gradientErrorMean += double(error);
+    quality.gradientErrorMean /= double(all.size());
+    const auto p99 = all.begin() + std::ptrdiff_t((all.size() - 1) * 99 / 100);
+    std::nth_element(all.begin(), p99, all.end());
+    quality.gradientErrorP99 = double(*p99);
+    return quality;
+}
+
+} // namespace vdbsynth

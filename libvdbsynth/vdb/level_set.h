@@ -1,0 +1,54 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/math/index_box.h"
+#include "libvdbsynth/math/vec3.h"
+#include "libvdbsynth/vdb/vdb_fwd.h"
+
+#include <string>
+#include <vector>
+
+namespace vdbsynth {
+
+/// A model as every command sees it: a narrow-band level set, negative inside, with a domain.
+struct LevelSet {
+    FloatGridPtr grid;             ///< name "surface", class level set, uniform voxels
+    IndexBox domain;               ///< the box that sizes and statistics mean
+    bool domainRecorded = false;   ///< false: the domain is just the box of the solid
+};
+
+inline constexpr float kHalfWidth = 3.f;                    ///< [voxels] of every level set we write
+inline constexpr const char* kSurfaceName = "surface";
+inline constexpr const char* kDomainKey = "vdbsynth:domain"; ///< metadata `i,j,k,I,J,K`, both corners inclusive
+
+std::string boxText(const IndexBox& box);
+/// Parses `i,j,k,I,J,K`. @return false if it is not six whole numbers with every minimum <= its maximum
+bool parseBox(const std::string& text, IndexBox& box);
+
+/// [world] length of a voxel side.
+double voxelSizeOf(const openvdb::FloatGrid& grid);
+/// Box of the solid: the voxels with a negative value.
+/// @throw Error EmptyInput "WHAT has no inside ..."
+IndexBox solidBox(const openvdb::FloatGrid& grid, const std::string& what);
+/// Number of voxels with a negative value, from the tree's leaves and tiles.
+double solidVoxels(const openvdb::FloatGrid& grid);
+/// A copy whose tree is shared and whose transform is the identity.
+FloatGridPtr inIndexSpace(const openvdb::FloatGrid& grid);
+/// Half-width of the band [voxels] by the background value.
+double halfWidthOf(const openvdb::FloatGrid& grid);
+std::size_t activeVoxels(const openvdb::FloatGrid& grid);
+/// Sets name, class and the domain's metadata.
+void stampLevelSet(LevelSet& levelSet);
+/// Hash of the values, topology and transform, for the source map.
+std::string levelSetHash(const openvdb::FloatGrid& grid);
+
+/// How true to a distance field a level set is, measured on its active voxels within the band.
+struct BandQuality {
+    double gradientErrorMean = 0;     ///< mean of | |grad| - 1 |, central differences, |value| < 1 voxel
+    double gradientErrorP99 = 0;
+    std::size_t measured = 0;         ///< voxels that were measured
+    std::size_t missingNeighbours = 0;///< active voxels next to the zero level with an inactive neighbour
+    bool finite = true;
+};
+BandQuality measureBand(const openvdb::FloatGrid& grid, const RunContext& ctx = {});
+
+} // namespace vdbsynth

@@ -1,0 +1,38 @@
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/mesh_conversion.h"
+#include "libvdbsynth/vdb/zero_level.h"
+
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <string>
+
+namespace vdbsynth {
+namespace {
+
+constexpr float kGap = 0.02f;  // [voxels] between sheets that touched
+
+void toWorld(const openvdb::FloatGrid& grid, Mesh& mesh) {
+    for (Vec3f& p : mesh.points) p = cast<float>(fromVec(grid.indexToWorld(toVec(cast<double>(p)))));
+    // A transform that mirrors space turns the faces round.
+    if (grid.transform().baseMap()->getAffineMap()->getMat4().det() > 0) return;
+    for (Triangle& t : mesh.triangles) std::swap(t[0], t[2]);
+    for (Quad& q : mesh.quads) std::swap(q[1], q[3]);
+}
+
+} // namespace
+
+Mesh levelSetToMesh(const openvdb::FloatGrid& grid, const MeshingOptions& options, const RunContext& ctx) {
+    requireOption(options.adaptivity >= 0 && options.adaptivity <= 1, "adaptivity", std::to_string(options.adaptivity), "from 0 to 1");
+    Stage stage(ctx, "level set to mesh", 2);
+    Mesh mesh = zeroLevelInIndexSpace(grid, options.adaptivity, ctx);
+    if (mesh.faceCount() == 0) throw Error(ErrorCode::EmptyInput, "the level set has no surface to mesh");
+    stage.advance();
+    separateNonManifold(mesh, kGap);
+    toWorld(grid, mesh);
+    stage.advance();
+    return mesh;
+}
+
+} // namespace vdbsynth

@@ -1,0 +1,25 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/grid/brick_field.h"
+#include "libvdbsynth/vdb/level_set.h"
+
+#include <string>
+
+namespace vdbsynth {
+
+/// 1 where a grid of any type is active, else 0, over `box`, in a field that begins at 0.
+/// @throw Error BadData (a kind of grid that has no values, such as points)
+BrickField gatherMask(const openvdb::GridBase& grid, const IndexBox& box, const RunContext& ctx = {});
+
+// Masks: bool grids named "mask", active where true.
+
+/// Every voxel of `box`.
+GridPtr boxMask(const IndexBox& box, double voxelSize);
+/// Voxels whose centre is within `radius` of `centre`. [world] @throw Error InvalidOption (--radius)
+GridPtr ballMask(const Vec3d& centre, double radius, double voxelSize);
+/// Voxels inside a solid.
+GridPtr insideMask(const openvdb::FloatGrid& levelSet);
+/// Active voxels of a float grid with minimum <= value <= maximum.
+GridPtr rangeMask(const openvdb::FloatGrid& grid, double minimum, double maximum);
+
+} // namespace vdbsynth

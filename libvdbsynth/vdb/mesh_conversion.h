@@ -1,0 +1,44 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/geometry/mesh.h"
+#include "libvdbsynth/geometry/point_cloud.h"
+#include "libvdbsynth/vdb/level_set.h"
+
+#include <string>
+
+namespace vdbsynth {
+
+/// Signed distance to a closed mesh, as OpenVDB's meshToLevelSet gives it (and so as vdb_tool does), with
+/// a pure scale transform.
+/// @param voxelSize  [world], above 0
+/// @param halfWidth  [voxels], at least 1.5
+/// @param name       begins the messages
+/// @throw Error Unusable (the level set encloses under half of the mesh's |signed volume|, or nothing: the
+///              mesh is too open), Memory (the band would need more than ctx.maxMemory), Cancelled
+/// @par Cost    as OpenVDB's; memory about 20 bytes an active voxel
+/// @par Repeats same bits for any number of threads
+FloatGridPtr meshToLevelSet(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
+                            const RunContext& ctx = {});
+
+struct MeshingOptions {
+    double adaptivity = 0.0;  ///< 0..1: how far flat regions may be merged; 0 keeps about two triangles a surface voxel
+};
+
+/// The zero level as a closed manifold mesh with outward faces: OpenVDB's dual contouring, then two Newton
+/// steps that put each vertex on the trilinear zero level (OpenVDB's own lie up to a tenth of a voxel
+/// inside curved surfaces), then sheets that touch are separated (geometry/mesh.h).
+/// @throw Error InvalidOption (--adaptivity), EmptyInput (no zero level), Cancelled
+/// @par Repeats same bits for any number of threads
+Mesh levelSetToMesh(const openvdb::FloatGrid& grid, const MeshingOptions& options = {}, const RunContext& ctx = {});
+
+struct PointOptions {
+    double spacing = 1.0;  ///< [voxels], least distance between two points, 0.25..100
+};
+
+/// Evenly spaced points on the zero level (Poisson-disk by darts in a random order drawn from ctx.seed),
+/// with the outward unit normals of the field.
+/// @throw Error InvalidOption, EmptyInput, Cancelled
+/// @par Repeats same bits for any number of threads
+PointCloud levelSetToPoints(const openvdb::FloatGrid& grid, const PointOptions& options = {}, const RunContext& ctx = {});
+
+} // namespace vdbsynth

@@ -1,0 +1,42 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/grid/brick_field.h"
+#include "libvdbsynth/vdb/level_set.h"
+
+#include <array>
+
+namespace vdbsynth {
+
+/// Distances to the zero level of any field whose sign says inside and outside: a valid narrow band. The
+/// zero level is meshed and projected (zero_level.h), distances are exact to that mesh, signs are those of
+/// the field, so cavities that no outside path reaches keep theirs.
+/// @param field      negative inside; any transform of uniform voxels, which the result keeps
+/// @param halfWidth  [voxels], at least 1.5
+/// @throw Error EmptyInput "WHAT has no surface ..."
+/// @par Repeats same bits for any number of threads
+FloatGridPtr rebuildLevelSet(const openvdb::FloatGrid& field, float halfWidth, const std::string& what, const RunContext& ctx = {});
+
+/// Which faces of a domain cut through the solid: low and high face of x, y, z.
+using CutFaces = std::array<bool, 6>;
+
+/// The level set over `domain` as distances [voxels] clamped to [-halfWidth, halfWidth], in a field that
+/// begins at 0. The band is widened by exact distances to the zero level. Zero-level faces that lie on a cut
+/// face of the domain (the caps of a clipped model) do not count: a block beside a cut sees what the
+/// material there looked like before the cut.
+/// @par Repeats same bits for any number of threads
+BrickField widenBand(const openvdb::FloatGrid& levelSet, const IndexBox& domain, const CutFaces& cut, float halfWidth,
+                     const RunContext& ctx = {});
+
+inline constexpr CutFaces kAllCut{true, true, true, true, true, true};
+
+/// A field [voxels] closed by caps half a voxel outside the cut faces of `domain`, over the domain grown by
+/// two voxels. Beyond the field's own box its nearest samples go on.
+BrickField closeField(const BrickField& field, const IndexBox& domain, const CutFaces& cut, float limit, const RunContext& ctx = {});
+
+/// A field [voxels] as a level set, its voxel 0 at `corner`, its voxel size and rotation those of
+/// `like`, closed by caps half a voxel outside the cut faces, then rebuilt to `halfWidth`.
+/// @throw Error EmptyInput (no surface)
+FloatGridPtr closeAndRebuild(const BrickField& field, const Index3& corner, const CutFaces& cut, float halfWidth,
+                             const openvdb::FloatGrid& like, const std::string& what, const RunContext& ctx = {});
+
+} // namespace vdbsynth

@@ -1,0 +1,58 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/vdb/level_set.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vdbsynth {
+
+/// One grid of a VDB file, as `info` prints it.
+struct GridSummary {
+    std::string name, type, gridClass;
+    Vec3d voxelSize;
+    bool linear = true, halfPrecision = false;
+    std::uint64_t activeVoxels = 0;
+    IndexBox activeBox;
+    bool isFloat = false;
+    double background = 0, minimum = 0, maximum = 0;  ///< only where isFloat
+    bool finite = true;                               ///< only where isFloat
+    std::vector<std::pair<std::string, std::string>> metadata;
+};
+
+/// @throw Error Io (missing, a directory, not readable), BadData (not a VDB file, truncated, corrupt)
+std::vector<GridSummary> summarizeVdb(const std::string& path, const RunContext& ctx = {});
+
+struct VdbReadOptions {
+    std::string gridName;       ///< which grid; empty: "surface", else the only level set, else the first level set, else a fog volume with `iso`
+    std::optional<double> iso;  ///< a fog volume is solid where its value is above this
+};
+
+/// Reads a model from a VDB file made by anyone: level sets as they are (a half-precision file as floats,
+/// an anisotropic or sheared transform resampled to its smallest voxel), fog volumes by `iso`.
+/// A recorded domain is kept; else the domain is the box of the solid.
+/// @throw Error  Io (missing, a directory, not readable), BadData (not a VDB file, truncated, corrupt, NaN,
+///               no usable grid, frustum transform), InvalidOption (no grid of that name), Unusable (a fog volume
+///               without iso), EmptyInput (no surface)
+/// @par Repeats  same bits for any number of threads
+LevelSet readVdbModel(const std::string& path, const VdbReadOptions& options = {}, const RunContext& ctx = {});
+
+/// Reads a float or double grid as it is: the named one, or the only one. @throw Error as readVdbModel
+FloatGridPtr readVdbFloatGrid(const std::string& path, const std::string& name, const RunContext& ctx = {});
+/// Reads one named grid of any type. @throw Error as readVdbModel
+GridPtr readVdbGrid(const std::string& path, const std::string& name, const RunContext& ctx = {});
+/// All grids of a file. @throw Error as readVdbModel
+std::vector<GridPtr> readVdbGrids(const std::string& path, const RunContext& ctx = {});
+
+/// File metadata, as name and value.
+using VdbMetadata = std::vector<std::pair<std::string, std::string>>;
+
+/// Writes grids to a VDB file. The random UUID in OpenVDB's header is replaced by one derived from the
+/// content, so equal grids and metadata give equal bytes.
+/// @throw Error Io (cannot be created, disk full)
+void writeVdb(const std::string& path, const std::vector<GridPtr>& grids, const VdbMetadata& metadata);
+
+} // namespace vdbsynth

@@ -1,0 +1,29 @@
+#pragma once
+#include "libvdbsynth/base/error.h"
+
+#include <openvdb/Exceptions.h>
+
+#include <new>
+#include <string>
+
+namespace vdbsynth {
+
+/// Runs `work` and turns what OpenVDB throws into the library's one exception type.
+/// @param what  what the error is about, for example a path; begins the message
+template <typename Work>
+auto behindWall(ErrorCode code, const std::string& what, Work&& work) -> decltype(work()) {
+    try {
+        return work();
+    } catch (const Error&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw Error(ErrorCode::Memory, what + ": out of memory; use larger voxels or raise --max-memory");
+    } catch (const std::exception& e) {
+        std::string text = e.what();
+        for (char& c : text)
+            if (c == '\n') c = ' ';
+        throw Error(code, what + ": " + text);
+    }
+}
+
+} // namespace vdbsynth

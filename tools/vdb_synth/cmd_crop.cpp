@@ -1,0 +1,34 @@
+#include "tools/vdb_synth/command.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/pipeline/crop.h"
+#include "libvdbsynth/pipeline/outputs.h"
+
+#include <nlohmann/json.hpp>
+
+namespace vdbsynth::cli {
+namespace {
+
+void crop(Run& run) {
+    run.requireInputs(1, 1);
+    const std::vector<std::string> paths = run.outputPaths();
+    requireOutputPaths(paths);
+    if (!run.arguments.has("box")) throw Error(ErrorCode::InvalidOption, "--box: missing; give i,j,k,I,J,K in index space, both corners inclusive");
+    const IndexBox box = run.arguments.box("box");
+    requireModelPath(run.arguments.inputs[0]);
+    const LevelSet result = cropModel(run.load(run.arguments.inputs[0]), box, run.context);
+    ModelOutputOptions outputs;
+    outputs.metadata = run.metadata();
+    writeModel(result, paths, outputs, run.outputs(), run.context);
+    run.count("active_voxels", activeVoxels(*result.grid));
+    run.finish();
+}
+
+} // namespace
+
+const Command kCrop{
+    "crop", "crop IN -o OUT --box BOX [options]", "Cut a box out of a model and record it as its domain", "vdb_synth crop grid.vdb -o part.vdb --box 8,8,8,39,39,39",
+    {{"box", "BOX", "i,j,k,I,J,K in index space, both corners inclusive (voxels)"}},
+    crop};
+
+} // namespace vdbsynth::cli

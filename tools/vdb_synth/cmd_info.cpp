@@ -1,0 +1,100 @@
+#include "tools/vdb_synth/command.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/geometry/mesh.h"
+#include "libvdbsynth/io/mesh_file.h"
+#include "libvdbsynth/io/path.h"
+
+#include <nlohmann/json.hpp>
+
+namespace vdbsynth::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json triple(const Vec3d& v) { return Json::array({v.x, v.y, v.z}); }
+Json triple(const Index3& v) { return Json::array({v.x, v.y, v.z}); }
+
+Json meshInfo(const std::string& path, const Run& run) {
+    const MeshSummary s = summarize(readMesh(path, run.context));
+    return Json{{"file", path}, {"kind", "mesh"}, {"vertices", s.vertices}, {"faces", s.faces}, {"bounds_min", triple(s.boxMin)}, {"bounds_max", triple(s.boxMax)},
+                {"area", s.area}, {"signed_volume", s.signedVolume}, {"open_edges", s.openEdges}, {"non_manifold_edges", s.nonManifoldEdges},
+                {"misoriented_edges", s.misorientedEdges}, {"closed_manifold", s.closedManifold()}};
+}
+
+Json gridInfo(const GridSummary& s) {
+    Json grid{{"name", s.name}, {"type", s.type}, {"class", s.gridClass}, {"voxel_size", triple(s.voxelSize)}, {"linear", s.linear},
+              {"half_precision", s.halfPrecision}, {"active_voxels", s.activeVoxels}};
+    if (s.activeVoxels > 0) {
+        grid["active_min"] = triple(s.activeBox.min);
+        grid["active_max"] = triple(s.activeBox.max);
+    }
+    if (s.isFloat) {
+        grid["background"] = s.background;
+        grid["minimum"] = s.minimum;
+        grid["maximum"] = s.maximum;
+        grid["finite"] = s.finite;
+    }
+    Json metadata = Json::object();
+    for (const auto& [name, value] : s.metadata) metadata[name] = value;
+    grid["metadata"] = metadata;
+    return grid;
+}
+
+Json vdbInfo(const std::string& path, Run& run) {
+    Json info{{"file", path}, {"kind", "vdb"}};
+    Json grids = Json::array();
+    for (const GridSummary& summary : summarizeVdb(path, run.context)) grids.push_back(gridInfo(summary));
+    info["grids"] = grids;
+    try {
+        const LevelSet model = loadModel(path, run.modelOptions(), run.context);
+        const BandQuality quality = measureBand(*model.grid, run.context);
+        info["model"] = Json{{"voxel_size", voxelSizeOf(*model.grid)}, {"half_width", halfWidthOf(*model.grid)}, {"domain", boxText(model.domain)},
+                             {"domain_recorded", model.domainRecorded}, {"solid_voxels", solidVoxels(*model.grid)}, {"active_voxels", activeVoxels(*model.grid)},
+                             {"gradient_error_mean", quality.gradientErrorMean}, {"gradient_error_p99", quality.gradientErrorP99},
+                             {"band_gaps", quality.missingNeighbours}, {"valid", quality.finite && quality.gradientErrorMean < 0.05 && quality.missingNeighbours == 0}};
+    } catch (const Error& error) {
+        if (error.code() == ErrorCode::Cancelled) throw;
+        info["model"] = nullptr;
+        info["not_a_model"] = error.what();
+    }
+    return info;
+}
+
+void printText(const Json& json, const std::string& indent) {
+    for (const auto& [key, value] : json.items()) {
+        if (value.is_object()) {
+            if (value.empty()) continue;
+            printLine(indent + key + ":");
+            printText(value, indent + "  ");
+        } else if (value.is_array() && !value.empty() && value[0].is_object()) {
+            for (const Json& item : value) {
+                printLine(indent + key + ":");
+                printText(item, indent + "  ");
+            }
+        } else {
+            printLine(indent + key + ": " + (value.is_string() ? value.get<std::string>() : value.dump()));
+        }
+    }
+}
+
+void info(Run& run) {
+    run.requireInputs(1, 1);
+    const std::string path = run.arguments.inputs[0];
+    requireModelPath(path);
+    run.modelOptions();
+    const Json json = isMeshPath(path) ? meshInfo(path, run) : vdbInfo(path, run);
+    if (run.arguments.has("json")) printLine(json.dump(2));
+    else printText(json, "");
+    run.noteInput(path);
+    run.finish();
+}
+
+} // namespace
+
+const Command kInfo{
+    "info", "info IN [--json]", "Say what is in a file: grids or faces, sizes, ranges, validity", "vdb_synth info grid.vdb",
+    {{"json", "", "print JSON"}},
+    info};
+
+} // namespace vdbsynth::cli

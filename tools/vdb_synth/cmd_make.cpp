@@ -1,0 +1,65 @@
+#include "tools/vdb_synth/command.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/pipeline/make.h"
+#include "libvdbsynth/pipeline/outputs.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace vdbsynth::cli {
+namespace {
+
+Index3 wholeTriple(const Arguments& arguments, const std::string& name) {
+    const std::array<double, 3> given = arguments.triple(name, {0, 0, 0});
+    Index3 result;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double value = given[std::size_t(axis)];
+        requireOption(!arguments.has(name) || (value == std::floor(value) && value >= 8 && value <= 4096), name, arguments.text(name), "three whole numbers from 8 to 4096, for example 64,64,32");
+        result[axis] = int(value);
+    }
+    return result;
+}
+
+void make(Run& run) {
+    run.requireInputs(1, 2);
+    MakeOptions options;
+    options.exemplar.kind = run.arguments.inputs[0];
+    options.exemplar.resolution = run.arguments.whole("resolution", 64, 16, 4096);
+    options.exemplar.feature = run.arguments.has("feature") ? run.arguments.real("feature", 0, 4, 256) : 0;
+    options.exemplar.size = wholeTriple(run.arguments, "size");
+    options.voxelSize = run.arguments.real("voxel-size", 1, 1e-30, 1e30);
+    // The contract's form is "make KIND OUT"; -o works as everywhere else.
+    std::vector<std::string> paths = run.arguments.all("output");
+    if (run.arguments.inputs.size() == 2) paths.insert(paths.begin(), run.arguments.inputs[1]);
+    if (paths.empty()) throw Error(ErrorCode::InvalidOption, "no output; usage: vdb_synth " + kMake.usage);
+    requireOutputPaths(paths);
+    const LevelSet model = makeModel(options, run.context);
+    ModelOutputOptions outputs;
+    outputs.metadata = run.metadata();
+    outputs.metadata.emplace_back("vdbsynth:kind", options.exemplar.kind);
+    writeModel(model, paths, outputs, run.outputs(), run.context);
+    run.count("active_voxels", activeVoxels(*model.grid));
+    run.finish();
+}
+
+std::string summary() {
+    std::string text = "Make a procedural exemplar: ";
+    bool first = true;
+    for (const ExemplarKind& kind : exemplarKinds()) {
+        text += (first ? "" : ", ") + kind.name;
+        first = false;
+    }
+    return text;
+}
+
+} // namespace
+
+const Command kMake{
+    "make", "make KIND OUT [options]", summary(), "vdb_synth make grid grid.vdb --seed 3",
+    {{"size", "X,Y,Z", "domain (voxels); default a cube of --resolution, flat kinds less high"},
+     {"feature", "F", "typical feature (voxels); a larger domain holds more of them"}},
+    make};
+
+} // namespace vdbsynth::cli

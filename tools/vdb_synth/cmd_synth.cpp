@@ -1,0 +1,151 @@
+#include "tools/vdb_synth/command.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/io/path.h"
+#include "libvdbsynth/pipeline/outputs.h"
+#include "libvdbsynth/pipeline/synth.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <cstdlib>
+
+namespace vdbsynth::cli {
+namespace {
+
+std::vector<std::string> split(const std::string& text) {
+    std::vector<std::string> parts;
+    std::size_t begin = 0;
+    for (std::size_t comma; (comma = text.find(',', begin)) != std::string::npos; begin = comma + 1) parts.push_back(text.substr(begin, comma - begin));
+    parts.push_back(text.substr(begin));
+    return parts;
+}
+
+void parseSize(const Arguments& arguments, SynthOptions& options) {
+    const std::string text = arguments.text("size");
+    if (text.empty()) throw Error(ErrorCode::InvalidOption, "--size: missing; give X,Y,Z in voxels or as multiples, for example --size 2x,2x,1x");
+    const std::vector<std::string> parts = split(text);
+    const char* range = "three sizes with commas, each in voxels or as a multiple, for example 2x,2x,1x or 128,128,64";
+    requireOption(parts.size() == 3, "size", text, range);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        char* end = nullptr;
+        const double value = std::strtod(parts[axis].c_str(), &end);
+        const bool multiple = std::string(end) == "x";
+        requireOption(!parts[axis].empty() && end != parts[axis].c_str() && (multiple || *end == 0) && std::isfinite(value) && value > 0, "size", text, range);
+        requireOption(multiple ? value >= 1 && value <= 1e6 : value == std::floor(value) && value <= 1 << 20, "size", text, multiple ? "multiples of at least 1x" : "whole numbers of voxels up to 1048576");
+        options.size[axis] = value;
+        options.multiple[axis] = multiple;
+    }
+}
+
+void parseBorder(const Arguments& arguments, SynthOptions& options) {
+    const std::string text = arguments.text("border");
+    if (text.empty()) return;
+    std::vector<std::string> parts = split(text);
+    if (parts.size() == 1) parts.assign(3, parts[0]);
+    requireOption(parts.size() == 3, "border", text, "cut or object, once or for each axis with commas");
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        requireOption(parts[axis] == "cut" || parts[axis] == "object", "border", text, "cut or object, once or for each axis with commas");
+        options.border[axis] = parts[axis] == "cut" ? Border::Cut : Border::Object;
+    }
+}
+
+SynthOptions parseOptions(const Arguments& arguments) {
+    SynthOptions options;
+    parseSize(arguments, options);
+    parseBorder(arguments, options);
+    if (arguments.has("exemplar-box")) options.exemplarBox = arguments.box("exemplar-box");
+    options.block = arguments.whole("block", 0, 4, 256);
+    options.levels = arguments.whole("levels", 0, 1, 8);
+    options.drift = arguments.whole("drift", 0, 0, 1 << 20);
+    options.draft = arguments.has("draft");
+    options.halfWidth = float(arguments.real("half-width", 3, 1.5, 100));
+    return options;
+}
+
+void synth(Run& run) {
+    run.requireInputs(1, 1);
+    const std::vector<std::string> paths = run.outputPaths();
+    requireOutputPaths(paths);
+    SynthOptions options = parseOptions(run.arguments);
+    const std::string mapPath = run.arguments.text("source-map");
+    const bool mapInside = mapPath == kNoValue;
+    bool anyVdb = false;
+    for (const std::string& path : paths) anyVdb = anyVdb || extensionOf(path) == "vdb";
+    if (!mapPath.empty()) {
+        requireOption(mapInside || extensionOf(mapPath) == "vdb", "source-map", mapPath, "a .vdb file");
+        if (mapInside && !anyVdb) throw Error(ErrorCode::InvalidOption, "--source-map: without a file it goes into a .vdb output, and there is none; give --source-map FILE.vdb");
+    }
+    ModelOutputOptions outputs;
+    outputs.adaptivity = run.arguments.real("adaptivity", 0, 0, 1);
+    requireModelPath(run.arguments.inputs[0]);
+    ModelOptions modelOptions = run.modelOptions();
+    modelOptions.halfWidth = 3;
+    const LevelSet exemplar = run.load(run.arguments.inputs[0], modelOptions);
+    if (run.arguments.has("exemplar-mask")) {
+        const std::string maskPath = run.arguments.text("exemplar-mask");
+        const std::vector<GridPtr> grids = readVdbGrids(maskPath, run.context);
+        if (grids.size() != 1) throw Error(ErrorCode::BadData, maskPath + ": a mask file holds one grid, this one holds " + std::to_string(grids.size()));
+        options.exemplarMask = grids.front();
+        run.noteInput(maskPath);
+    }
+    const SynthResult result = synthesize(exemplar, options, run.context);
+    outputs.metadata = run.metadata();
+    std::vector<GridPtr> mapGrids;
+    if (!mapPath.empty()) mapGrids = sourceMapGrids(result.map, *result.model.grid, run.context);
+    if (mapInside) outputs.extraGrids = mapGrids;
+    writeModel(result.model, paths, outputs, run.outputs(), run.context);
+    if (!mapPath.empty() && !mapInside) writeVdb(run.outputs().add(mapPath), mapGrids, outputs.metadata);
+    run.count("block", result.stats.block);
+    run.count("levels", result.stats.levels);
+    run.count("matches", result.stats.matches);
+    run.count("bounds_computed", result.stats.nodes);
+    run.count("exact_costs_computed", result.stats.exact);
+    run.count("index_bytes", result.stats.indexBytes);
+    run.count("mean_match_cost", result.stats.meanCost);
+    run.count("active_voxels", activeVoxels(*result.model.grid));
+    run.finish();
+}
+
+void repeat(Run& run) {
+    run.requireInputs(2, 2);
+    const std::vector<std::string> paths = run.outputPaths();
+    requireOutputPaths(paths);
+    const std::string mapPath = run.arguments.inputs[0];
+    if (extensionOf(mapPath) != "vdb") throw Error(ErrorCode::InvalidOption, mapPath + ": a source map is a .vdb file");
+    requireModelPath(run.arguments.inputs[1]);
+    ModelOutputOptions outputs;
+    outputs.adaptivity = run.arguments.real("adaptivity", 0, 0, 1);
+    ModelOptions modelOptions = run.modelOptions();
+    const SourceMap map = readSourceMap(mapPath, run.context);
+    run.noteInput(mapPath);
+    const LevelSet exemplar = run.load(run.arguments.inputs[1], modelOptions);
+    const LevelSet result = repeatSynthesis(map, exemplar, run.context);
+    outputs.metadata = run.metadata();
+    writeModel(result, paths, outputs, run.outputs(), run.context);
+    run.count("active_voxels", activeVoxels(*result.grid));
+    run.finish();
+}
+
+} // namespace
+
+const Command kSynth{
+    "synth", "synth EXEMPLAR -o OUT --size X,Y,Z [options]", "Make more geometry like an exemplar's", "vdb_synth synth grid.vdb -o more.vdb --size 2x,2x,1x",
+    {{"size", "X,Y,Z", "size of the result: voxels, or multiples of the exemplar's domain such as 2x,2x,1x"},
+     {"block", "N", "side of the matched blocks (voxels), 4 to 256; default from the exemplar, at most 16"},
+     {"levels", "N", "number of passes, coarse to fine; default 3 or as many as fit"},
+     {"draft", "", "leave out the finest pass: several times faster"},
+     {"border", "KIND", "cut or object, once or for each growing axis; default cut where a domain is recorded"},
+     {"exemplar-box", "BOX", "domain i,j,k,I,J,K in the exemplar's index space, both corners inclusive (voxels)"},
+     {"exemplar-mask", "FILE.vdb", "take blocks only from where this grid is active"},
+     {"drift", "D", "how far sources may be from their own place along axes at 1x (voxels), default 0"},
+     {"source-map", "[FILE.vdb]", "also write the source map, for repeat; without FILE into the .vdb output", false, 0, ".vdb"},
+     {"adaptivity", "A", "0 to 1: merge flat parts of a mesh output, default 0"}},
+    synth};
+
+const Command kRepeat{
+    "repeat", "repeat MAP EXEMPLAR -o OUT [options]", "Apply a saved source map again", "vdb_synth repeat map.vdb grid.vdb -o again.vdb",
+    {{"adaptivity", "A", "0 to 1: merge flat parts of a mesh output, default 0"}},
+    repeat};
+
+} // namespace vdbsynth::cli

@@ -1,0 +1,72 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/io/output_set.h"
+#include "libvdbsynth/pipeline/model.h"
+#include "libvdbsynth/vdb/vdb_file.h"
+#include "tools/vdb_synth/option_set.h"
+#include "tools/vdb_synth/progress.h"
+#include "tools/vdb_synth/supervisor.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace vdbsynth::cli {
+
+struct Command;
+
+/// One run of a command: its arguments, context, outputs and report. Made by main, used by the command.
+class Run {
+public:
+    Run(const Command& command, Arguments arguments, const SupervisorLine& line);
+    ~Run();
+
+    const Arguments arguments;
+    RunContext context;
+
+    /// Paths given with -o, at least one. @throw Error InvalidOption
+    std::vector<std::string> outputPaths() const;
+    /// The only path given with -o. @throw Error InvalidOption
+    std::string outputPath() const;
+    /// @throw Error InvalidOption unless low <= number of inputs <= high
+    void requireInputs(std::size_t low, std::size_t high) const;
+    OutputSet& outputs() { return *mOutputs; }
+
+    /// Options of loadModel from the common options.
+    ModelOptions modelOptions() const;
+    /// loadModel, noting the file's name and hash for metadata and report.
+    LevelSet load(const std::string& path);
+    LevelSet load(const std::string& path, const ModelOptions& options);
+    /// Notes an input that is not read through `load`.
+    void noteInput(const std::string& path);
+    /// File metadata of every VDB output.
+    VdbMetadata metadata() const;
+    /// Adds a number or text to the report's "counts".
+    void count(const std::string& name, const nlohmann::json& value);
+    /// Writes --report if asked for and renames all outputs into place.
+    void finish();
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> mImpl;
+    std::unique_ptr<OutputSet> mOutputs;
+};
+
+/// One command of the tool. The table in main.cpp is the only registry.
+struct Command {
+    std::string name, usage, summary, example;
+    std::vector<Option> options;      ///< its own; the common ones come on top
+    void (*run)(Run&);                ///< checks every option before it reads a file
+};
+
+const std::vector<Option>& commonOptions();
+std::string helpText(const Command& command);
+
+/// Data for standard output.
+void printLine(const std::string& text);
+
+extern const Command kConvert, kInfo, kCrop, kMask, kMatch, kSynth, kRepeat, kRender, kMake;
+
+} // namespace vdbsynth::cli

@@ -1,0 +1,196 @@
+#include "tools/vdb_synth/command.h"
+#include "tools/vdb_synth/version.h"
+
+#include "libvdbsynth/base/error.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <new>
+#include <sstream>
+
+#include <sys/resource.h>
+
+namespace vdbsynth::cli {
+namespace {
+
+// The only registry of commands.
+const std::vector<const Command*>& commands() {
+    static const std::vector<const Command*> all{&kConvert, &kInfo, &kCrop, &kMask, &kMatch, &kSynth, &kRepeat, &kRender, &kMake};
+    return all;
+}
+
+std::string overview() {
+    std::string text = "vdb_synth makes new geometry from examples.\n\nUsage: vdb_synth COMMAND INPUTS -o OUTPUT [options]\n\n";
+    for (const Command* command : commands()) {
+        std::string name = command->name;
+        name.resize(10, ' ');
+        text += "  " + name + command->summary + "\n";
+    }
+    return text + "\nvdb_synth COMMAND --help tells more. Exit codes: 0 done, 1 unusable input, 2 bad option, 3 bad file, 130 and 143 stopped.\n";
+}
+
+int fail(const Error& error, const std::string& command) {
+    std::string text = error.what();
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    std::fprintf(stderr, "vdb_synth%s%s: error: %s\n", command.empty() ? "" : " ", command.c_str(), text.c_str());
+    if (error.code() == ErrorCode::Cancelled && stopSignal()) return 128 + stopSignal();
+    return exitCode(error.code());
+}
+
+// Values of --config that the command line does not give.
+void mergeConfig(const Command& command, Arguments& arguments) {
+    const std::string path = arguments.text("config");
+    if (path.empty()) return;
+    std::ifstream file(path);
+    if (!file) throw Error(ErrorCode::Io, path + ": no such file");
+    nlohmann::json json = nlohmann::json::parse(file, nullptr, /* allow_exceptions= */ false);
+    if (json.is_object() && json.contains("options")) json = json["options"];
+    if (!json.is_object()) throw Error(ErrorCode::BadData, path + ": not a JSON object of options, such as the \"options\" of a --report");
+    std::vector<std::string> names;
+    for (const Option& option : commonOptions()) names.push_back(option.name);
+    for (const Option& option : command.options) names.push_back(option.name);
+    for (const auto& [name, value] : json.items()) {
+        std::vector<std::string> values;
+        const auto add = [&](const nlohmann::json& item) { values.push_back(item.is_string() ? item.get<std::string>() : item.dump()); };
+        if (value.is_array()) for (const auto& item : value) add(item);
+        else add(value);
+        if (name == "inputs") {
+            if (arguments.inputs.empty()) arguments.inputs = values;
+            continue;
+        }
+        if (std::find(names.begin(), names.end(), name) == names.end())
+            throw Error(ErrorCode::InvalidOption, path + ": \"" + name + "\" is not an option of " + command.name);
+        if (!arguments.has(name) && !values.empty()) arguments.values[name] = values;
+    }
+}
+
+// Past this the system refuses memory, which becomes an error, instead of ending the process later.
+void limitMemory(std::uint64_t bytes) {
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    const rlimit limit{rlim_t(bytes + 512000000), rlim_t(bytes + 512000000)};
+    ::setrlimit(RLIMIT_DATA, &limit);
+#else
+    (void)bytes;
+#endif
+}
+
+int execute(const Command& command, const Arguments& arguments, const SupervisorLine& line) {
+    try {
+        Run run(command, arguments, line);
+        limitMemory(run.context.maxMemory);
+        command.run(run);
+        if (std::fflush(stdout) != 0) throw Error(ErrorCode::Io, "standard output cannot be written");
+        return 0;
+    } catch (const Error& error) {
+        return fail(error, command.name);
+    } catch (const std::bad_alloc&) {
+        return fail(Error(ErrorCode::Memory, "out of memory; use larger voxels, a smaller size or a larger --max-memory"), command.name);
+    } catch (const std::exception& error) {
+        return fail(Error(ErrorCode::Solver, std::string("internal error: ") + error.what()), command.name);
+    }
+}
+
+int dispatch(const std::string& name, const std::vector<std::string>& words) {
+    const Command* command = nullptr;
+    std::vector<std::string> names;
+    for (const Command* known : commands()) {
+        names.push_back(known->name);
+        if (known->name == name) command = known;
+    }
+    if (!command) {
+        const std::string near = nearestName(name, names);
+        return fail(Error(ErrorCode::InvalidOption, name + ": unknown command" + (near.empty() ? "; see vdb_synth --help" : "; did you mean " + near + "?")), "");
+    }
+    Arguments arguments;
+    try {
+        std::vector<Option> options = command->options;
+        options.insert(options.end(), commonOptions().begin(), commonOptions().end());
+        arguments = parseArguments(options, words);
+        if (arguments.has("help")) {
+            std::printf("%s", helpText(*command).c_str());
+            return 0;
+        }
+        if (arguments.has("version")) {
+            std::printf("vdb_synth %s (OpenVDB %s)\n", kVersion, kOpenVdbVersion);
+            return 0;
+        }
+        mergeConfig(*command, arguments);
+    } catch (const Error& error) {
+        return fail(error, command->name);
+    }
+    const auto work = [&](const SupervisorLine& line) { return execute(*command, arguments, line); };
+    if (arguments.has("no-supervisor")) {
+        installStopHandlers();
+        return work(SupervisorLine());
+    }
+    return supervise(work);
+}
+
+} // namespace
+
+const std::vector<Option>& commonOptions() {
+    static const std::vector<Option> options{
+        {"output", "FILE", "where the result goes, kind by extension; may be given several times", true, 'o'},
+        {"voxel-size", "W", "side of a voxel for meshes (world)"},
+        {"resolution", "N", "voxels along the longest side of a mesh, default 128"},
+        {"half-width", "V", "half-width of the narrow band made from a mesh (voxels), default 3"},
+        {"grid", "NAME", "which grid of a VDB file"},
+        {"iso", "VALUE", "a fog volume is solid above this value"},
+        {"threads", "N", "number of threads, default one per core; results do not depend on it"},
+        {"seed", "N", "seed of everything random, default 0"},
+        {"max-memory", "BYTES", "most memory to use, for example 4G; default 80 % of the machine's"},
+        {"progress", "STYLE", "auto, bar, json or off; on standard error"},
+        {"report", "FILE.json", "options, times and peak memory by stage, counts"},
+        {"config", "FILE.json", "options from a file or an earlier report; the command line wins"},
+        {"no-supervisor", "", "work in this process, for debuggers"},
+        {"quiet", "", "errors and warnings only", false, 'q'},
+        {"verbose", "", "say what is done", false, 'v'},
+        {"help", "", "this text", false, 'h'},
+        {"version", "", "versions of vdb_synth and OpenVDB"},
+    };
+    return options;
+}
+
+std::string helpText(const Command& command) {
+    std::string text = command.summary + "\n\nUsage: vdb_synth " + command.usage + "\n\n";
+    const auto list = [&text](const std::vector<Option>& options) {
+        for (const Option& option : options) {
+            std::string left = "  " + (option.letter ? std::string("-") + option.letter + ", " : std::string()) + "--" + option.name + (option.argument.empty() ? "" : " " + option.argument);
+            if (left.size() < 30) left.resize(30, ' ');
+            else left += "\n" + std::string(30, ' ');
+            text += left + option.help + "\n";
+        }
+    };
+    if (!command.options.empty()) {
+        text += "Options:\n";
+        list(command.options);
+        text += "\n";
+    }
+    text += "Common options:\n";
+    list(commonOptions());
+    return text + "\nExample:\n  " + command.example + "\n";
+}
+
+} // namespace vdbsynth::cli
+
+int main(int argc, char** argv) {
+    using namespace vdbsynth;
+    const std::vector<std::string> words(argv + std::min(argc, 2), argv + argc);
+    const std::string first = argc > 1 ? argv[1] : "";
+    if (first.empty()) {
+        std::fprintf(stderr, "%s", cli::overview().c_str());
+        return 2;
+    }
+    if (first == "--help" || first == "-help" || first == "-h" || first == "help") {
+        std::printf("%s", cli::overview().c_str());
+        return 0;
+    }
+    if (first == "--version" || first == "-version") {
+        std::printf("vdb_synth %s (OpenVDB %s)\n", cli::kVersion, cli::kOpenVdbVersion);
+        return 0;
+    }
+    return cli::dispatch(first, words);
+}

@@ -1,0 +1,68 @@
+#include "tools/vdb_synth/progress.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+
+#include <sys/resource.h>
+
+namespace vdbsynth::cli {
+
+std::uint64_t peakMemory() {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return std::uint64_t(usage.ru_maxrss) * 1024;
+}
+
+void ProgressLog::endStage() {
+    if (mCurrent.empty()) return;
+    const double seconds = std::chrono::duration<double>(Clock::now() - mBegan).count();
+    if (!mStages.empty() && mStages.back().name == mCurrent) mStages.back().seconds += seconds;
+    else mStages.push_back({mCurrent, seconds, 0});
+    mStages.back().peakBytes = peakMemory();
+}
+
+void ProgressLog::update(const Progress& progress) {
+    if (progress.stage != mCurrent) {
+        endStage();
+        mCurrent = progress.stage;
+        mBegan = Clock::now();
+        mDrawn = {};
+    }
+    draw(progress);
+}
+
+void ProgressLog::draw(const Progress& progress) {
+    const bool last = progress.done == progress.total;
+    const auto now = Clock::now();
+    if (mStyle == ProgressStyle::Off || (!last && now - mDrawn < std::chrono::milliseconds(100))) return;
+    mDrawn = now;
+    const double fraction = double(progress.done) / double(progress.total);
+    if (mStyle == ProgressStyle::Json) {
+        const nlohmann::json line{{"stage", progress.stage}, {"done", progress.done}, {"total", progress.total}};
+        std::fprintf(stderr, "%s\n", line.dump().c_str());
+        return;
+    }
+    constexpr int kWidth = 30;
+    std::string bar(kWidth, ' ');
+    for (int i = 0; i < int(fraction * kWidth); ++i) bar[std::size_t(i)] = '#';
+    std::fprintf(stderr, "\r\033[K[%s] %3d %% %.60s", bar.c_str(), int(fraction * 100), progress.stage.c_str());
+    std::fflush(stderr);
+    mVisible = true;
+}
+
+void ProgressLog::clear() {
+    if (!mVisible) return;
+    std::fprintf(stderr, "\r\033[K");
+    std::fflush(stderr);
+    mVisible = false;
+}
+
+const std::vector<StageRecord>& ProgressLog::finish() {
+    endStage();
+    mCurrent.clear();
+    clear();
+    return mStages;
+}
+
+} // namespace vdbsynth::cli

@@ -1,0 +1,171 @@
+#include "tools/vdb_synth/command.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/hash.h"
+#include "libvdbsynth/io/path.h"
+#include "tools/vdb_synth/stop_flag.h"
+#include "tools/vdb_synth/version.h"
+
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <set>
+
+#include <unistd.h>
+
+namespace vdbsynth::cli {
+namespace {
+
+ProgressStyle progressStyle(const Arguments& arguments) {
+    const std::string style = arguments.text("progress", "auto");
+    requireOption(style == "auto" || style == "bar" || style == "json" || style == "off", "progress", style, "auto, bar, json or off");
+    if (style == "bar") return ProgressStyle::Bar;
+    if (style == "json") return ProgressStyle::Json;
+    return style == "auto" && ::isatty(2) && !arguments.has("quiet") ? ProgressStyle::Bar : ProgressStyle::Off;
+}
+
+std::uint64_t presentMemory() { return std::uint64_t(::sysconf(_SC_PHYS_PAGES)) * std::uint64_t(::sysconf(_SC_PAGE_SIZE)); }
+
+// Options that change how a run goes, not what it makes.
+const std::set<std::string>& incidental() {
+    static const std::set<std::string> names{"threads", "progress", "report", "config", "quiet", "verbose", "max-memory", "output", "no-supervisor", "seed", "source-map"};
+    return names;
+}
+
+nlohmann::json asJson(const std::vector<std::string>& values) {
+    if (values.size() == 1) return values.front();
+    return values;
+}
+
+} // namespace
+
+struct Run::Impl {
+    const Command& command;
+    SupervisorLine line;
+    ProgressLog progress;
+    bool quiet = false, verbose = false, reading = false;
+    std::vector<std::pair<std::string, std::string>> inputs{};  // name, hash
+    nlohmann::json counts = nlohmann::json::object();
+    std::chrono::steady_clock::time_point began = std::chrono::steady_clock::now();
+
+    nlohmann::json options(const Arguments& arguments, bool normalised) const {
+        nlohmann::json json = nlohmann::json::object();
+        for (const auto& [name, values] : arguments.values)
+            if (!normalised || !incidental().count(name)) json[name] = asJson(values);
+        if (!normalised) {
+            json["inputs"] = arguments.inputs;
+            json.erase("report");
+            json.erase("config");
+        }
+        return json;
+    }
+};
+
+Run::Run(const Command& command, Arguments given, const SupervisorLine& line)
+    : arguments(std::move(given)), mImpl(new Impl{command, line, ProgressLog(progressStyle(arguments))}) {
+    Impl& impl = *mImpl;
+    impl.quiet = arguments.has("quiet");
+    impl.verbose = arguments.has("verbose");
+    context.seed = arguments.wide("seed", 0);
+    context.threads = arguments.whole("threads", 0, 0, 1024);
+    context.maxMemory = arguments.bytes("max-memory", presentMemory() / 10 * 8);
+    context.cancel = stopFlag();
+    context.onProgress = [&impl](const Progress& progress) {
+        if (progress.reading) impl.line.reading(progress.stage.substr(progress.stage.find(' ') + 1));
+        else if (impl.reading) impl.line.doneReading();
+        else impl.line.alive();
+        if (progress.reading && progress.done == progress.total) impl.line.doneReading();
+        impl.reading = progress.reading;
+        impl.progress.update(progress);
+    };
+    context.onMessage = [&impl](MessageLevel level, const std::string& text) {
+        if (level == MessageLevel::Detail && !impl.verbose) return;
+        if (level != MessageLevel::Warning && impl.quiet) return;
+        impl.progress.clear();
+        std::fprintf(stderr, "vdb_synth: %s%s\n", level == MessageLevel::Warning ? "warning: " : "", text.c_str());
+    };
+    mOutputs = std::make_unique<OutputSet>([&impl](const std::string& path) { impl.line.temporary(path); });
+}
+
+Run::~Run() { mImpl->progress.clear(); }
+
+std::vector<std::string> Run::outputPaths() const {
+    const std::vector<std::string> paths = arguments.all("output");
+    if (paths.empty()) throw Error(ErrorCode::InvalidOption, "--output: missing; say where the result goes with -o FILE");
+    return paths;
+}
+
+std::string Run::outputPath() const {
+    const std::vector<std::string> paths = outputPaths();
+    if (paths.size() > 1) throw Error(ErrorCode::InvalidOption, "--output: " + mImpl->command.name + " writes one file");
+    return paths.front();
+}
+
+void Run::requireInputs(std::size_t low, std::size_t high) const {
+    const std::size_t given = arguments.inputs.size();
+    if (given < low) throw Error(ErrorCode::InvalidOption, std::string(given == 0 ? "no input" : "too few inputs") + "; usage: vdb_synth " + mImpl->command.usage);
+    if (given > high) throw Error(ErrorCode::InvalidOption, arguments.inputs[high] + ": one input too many; usage: vdb_synth " + mImpl->command.usage);
+}
+
+ModelOptions Run::modelOptions() const {
+    ModelOptions options;
+    options.voxelSize = arguments.has("voxel-size") ? arguments.real("voxel-size", 0, 1e-30, 1e30) : 0;
+    options.resolution = arguments.whole("resolution", 0, 2, 100000);
+    if (arguments.has("voxel-size") && arguments.has("resolution"))
+        throw Error(ErrorCode::InvalidOption, "--voxel-size and --resolution: give one of them");
+    options.halfWidth = arguments.real("half-width", 3, 1.5, 100);
+    options.grid = arguments.text("grid");
+    if (arguments.has("iso")) options.iso = arguments.real("iso", 0, -1e30, 1e30);
+    return options;
+}
+
+void Run::noteInput(const std::string& path) { mImpl->inputs.emplace_back(fileNameOf(path), fileHash(path)); }
+
+LevelSet Run::load(const std::string& path) { return load(path, modelOptions()); }
+
+LevelSet Run::load(const std::string& path, const ModelOptions& options) {
+    LevelSet model = loadModel(path, options, context);
+    noteInput(path);
+    return model;
+}
+
+VdbMetadata Run::metadata() const {
+    nlohmann::json inputs = nlohmann::json::array();
+    for (const auto& [name, hash] : mImpl->inputs) inputs.push_back({{"name", name}, {"hash", hash}});
+    return {{"vdbsynth:version", kVersion},
+            {"vdbsynth:command", mImpl->command.name},
+            {"vdbsynth:options", mImpl->options(arguments, true).dump()},
+            {"vdbsynth:seed", std::to_string(context.seed)},
+            {"vdbsynth:inputs", inputs.dump()}};
+}
+
+void Run::count(const std::string& name, const nlohmann::json& value) { mImpl->counts[name] = value; }
+
+void Run::finish() {
+    Impl& impl = *mImpl;
+    if (arguments.has("report")) {
+        nlohmann::json stages = nlohmann::json::array();
+        for (const StageRecord& stage : impl.progress.finish())
+            stages.push_back({{"name", stage.name}, {"seconds", stage.seconds}, {"peak_bytes", stage.peakBytes}});
+        nlohmann::json inputs = nlohmann::json::array();
+        for (const auto& [name, hash] : impl.inputs) inputs.push_back({{"name", name}, {"hash", hash}});
+        const nlohmann::json report{{"program", "vdb_synth"}, {"version", kVersion}, {"command", impl.command.name},
+                                    {"options", impl.options(arguments, false)}, {"seed", context.seed}, {"inputs", inputs},
+                                    {"seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - impl.began).count()},
+                                    {"peak_bytes", peakMemory()}, {"stages", stages}, {"counts", impl.counts}};
+        const std::string path = arguments.text("report");
+        std::ofstream file(mOutputs->add(path));
+        file << report.dump(2) << '\n';
+        file.close();
+        if (!file) throw Error(ErrorCode::Io, path + ": writing failed; the disk may be full");
+    }
+    throwIfCancelled(context);
+    mOutputs->commit();
+    impl.progress.finish();
+}
+
+void printLine(const std::string& text) { std::printf("%s\n", text.c_str()); }
+
+} // namespace vdbsynth::cli

@@ -1,0 +1,179 @@
+#include "tools/vdb_synth/supervisor.h"
+
+#include "tools/vdb_synth/stop_flag.h"
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <set>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace vdbsynth::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::atomic<bool> gStop{false};
+volatile std::sig_atomic_t gSignal = 0;
+
+extern "C" void onStopSignal(int signal) {
+    gSignal = signal;
+    gStop.store(true, std::memory_order_relaxed);
+}
+
+// What the parent knows of the child.
+struct Child {
+    pid_t process = 0;
+    std::string pending;              // bytes of an unfinished message
+    std::string reading;              // file being read, empty if none
+    Clock::time_point lastSign = Clock::now();
+    std::set<std::string> temporaries;
+};
+
+void handle(Child& child, const std::string& message) {
+    child.lastSign = Clock::now();
+    if (message.empty()) return;
+    if (message[0] == 'R') child.reading = message.substr(1);
+    if (message[0] == 'D') child.reading.clear();
+    if (message[0] == 'T') child.temporaries.insert(message.substr(1));
+}
+
+void readMessages(Child& child, int file) {
+    char buffer[4096];
+    for (;;) {
+        const ssize_t got = ::read(file, buffer, sizeof buffer);
+        if (got <= 0) return;
+        child.pending.append(buffer, std::size_t(got));
+        std::size_t end;
+        while ((end = child.pending.find('\0')) != std::string::npos) {
+            handle(child, child.pending.substr(0, end));
+            child.pending.erase(0, end + 1);
+        }
+    }
+}
+
+// Generous: no reader here is slower than 200 KB/s on any sample.
+double secondsAllowed(const std::string& path) {
+    if (const char* fixed = std::getenv("VDBSYNTH_READ_TIMEOUT")) return std::atof(fixed);
+    struct stat status {};
+    const double bytes = ::stat(path.c_str(), &status) == 0 ? double(status.st_size) : 0;
+    return 60 + bytes / 200e3;
+}
+
+void removeTemporaries(const Child& child) {
+    for (const std::string& path : child.temporaries) ::unlink(path.c_str());
+}
+
+int reportDeath(const Child& child, int signal, bool hung) {
+    const char* program = "vdb_synth: error: ";
+    if (hung) {
+        std::fprintf(stderr, "%s%s: reading made no progress and was stopped; the file is corrupt or not what its name says\n", program, child.reading.c_str());
+        return 3;
+    }
+    if (signal == SIGKILL) {
+        std::fprintf(stderr, "%s%sthe work was killed, most likely out of memory; use larger voxels, a smaller size or --max-memory\n", program, child.reading.empty() ? "" : (child.reading + ": ").c_str());
+        return 1;
+    }
+    if (!child.reading.empty()) {
+        std::fprintf(stderr, "%s%s: its reader crashed (signal %d); the file is truncated or corrupt\n", program, child.reading.c_str(), signal);
+        return 3;
+    }
+    std::fprintf(stderr, "%sinternal error (signal %d); nothing was written; please report the command line\n", program, signal);
+    return 1;
+}
+
+int watch(Child& child, int file) {
+    bool killed = false, hung = false, asked = false;
+    Clock::time_point askedAt;
+    int status = 0;
+    for (;;) {
+        pollfd wait{file, POLLIN, 0};
+        ::poll(&wait, 1, 200);
+        readMessages(child, file);
+        const pid_t ended = ::waitpid(child.process, &status, WNOHANG);
+        if (ended == child.process) break;
+        if (wait.revents & POLLHUP) {
+            // The child closed its end: it is about to end.
+            if (::waitpid(child.process, &status, 0) == child.process) break;
+        }
+        if (gSignal && !asked) {
+            asked = true;
+            askedAt = Clock::now();
+            ::kill(child.process, gSignal);
+        }
+        const double silent = std::chrono::duration<double>(Clock::now() - child.lastSign).count();
+        hung = hung || (!child.reading.empty() && silent > secondsAllowed(child.reading));
+        const bool late = asked && std::chrono::duration<double>(Clock::now() - askedAt).count() > 5;
+        if ((hung || late) && !killed) {
+            killed = true;
+            ::kill(child.process, SIGKILL);
+        }
+    }
+    readMessages(child, file);
+    if (WIFEXITED(status)) return WEXITSTATUS(status);
+    removeTemporaries(child);
+    if (asked) {
+        std::fprintf(stderr, "vdb_synth: error: interrupted; nothing was written\n");
+        return 128 + int(gSignal);
+    }
+    return reportDeath(child, WTERMSIG(status), hung);
+}
+
+} // namespace
+
+const std::atomic<bool>* stopFlag() { return &gStop; }
+int stopSignal() { return gSignal; }
+
+void installStopHandlers() {
+    struct sigaction action {};
+    action.sa_handler = onStopSignal;
+    ::sigemptyset(&action.sa_mask);
+    ::sigaction(SIGINT, &action, nullptr);
+    ::sigaction(SIGTERM, &action, nullptr);
+    ::signal(SIGPIPE, SIG_IGN);
+    ::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is a write error like a full disk
+}
+
+void SupervisorLine::send(char kind, const std::string& text) const {
+    if (mFile < 0) return;
+    std::string message = kind + text;
+    message += '\0';
+    ssize_t ignored = ::write(mFile, message.data(), message.size());
+    (void)ignored;
+}
+
+int supervise(const std::function<int(const SupervisorLine&)>& work) {
+    int ends[2];
+    if (::pipe2(ends, O_CLOEXEC) != 0) return work(SupervisorLine());
+    installStopHandlers();
+    const pid_t parent = ::getpid();
+    const pid_t process = ::fork();
+    if (process < 0) {
+        ::close(ends[0]);
+        ::close(ends[1]);
+        return work(SupervisorLine());
+    }
+    if (process == 0) {
+        ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+        if (::getppid() != parent) ::_exit(1);
+        ::close(ends[0]);
+        const int code = work(SupervisorLine(ends[1]));
+        std::fflush(nullptr);
+        ::_exit(code);  // everything is written; the grids need no freeing
+    }
+    ::close(ends[1]);
+    ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
+    Child child;
+    child.process = process;
+    return watch(child, ends[0]);
+}
+
+} // namespace vdbsynth::cli

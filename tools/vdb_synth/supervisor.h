@@ -1,0 +1,33 @@
+#pragma once
+#include <functional>
+#include <string>
+
+namespace vdbsynth::cli {
+
+/// Talks from the working process to the one that watches it. All calls are no-ops without a supervisor.
+class SupervisorLine {
+public:
+    explicit SupervisorLine(int file = -1) : mFile(file) {}
+    void reading(const std::string& path) const { send('R', path); }
+    void doneReading() const { send('D', ""); }
+    void alive() const { send('A', ""); }
+    void temporary(const std::string& path) const { send('T', path); }
+
+private:
+    void send(char kind, const std::string& text) const;
+    int mFile;
+};
+
+/// Runs `work` in a child process and watches it: a child that crashes, is killed, runs out of memory or
+/// hangs while it reads a file becomes one line on standard error and an exit code by the contract, and its
+/// temporary files are removed. SIGINT and SIGTERM are passed on; a child that does not end within five seconds
+/// is killed. Call before any thread is started.
+/// @return the exit code for this process
+int supervise(const std::function<int(const SupervisorLine&)>& work);
+
+/// 0, SIGINT or SIGTERM: the signal that asked this process to stop. See installStopHandlers.
+int stopSignal();
+/// Makes SIGINT and SIGTERM set the flag that `stopFlag` returns instead of ending the process.
+void installStopHandlers();
+
+} // namespace vdbsynth::cli

@@ -4,22 +4,25 @@ namespace vdbsynth {
 
 int exitCode(ErrorCode code) noexcept {
     switch (code) {
-        case ErrorCode::InvalidOption: return 2;
+        case ErrorCode::InvalidOption:
+            return 2;
         case ErrorCode::Io:
-        case ErrorCode::BadData: return 3;
-        case ErrorCode::Cancelled: return 130;
+        case ErrorCode::BadData:
+            return 3;
+        case ErrorCode::Cancelled:
+            return 130;
         case ErrorCode::ShapeMismatch:
         case ErrorCode::EmptyInput:
         case ErrorCode::Unusable:
         case ErrorCode::Memory:
-        case ErrorCode::Solver: return 1;
+        case ErrorCode::Solver:
+            return 1;
     }
     return 1;
 }
 
-void requireOption(bool valid, const std::string& name, const std::string& value,
-                   const std::string& range) {
+void requireOption(bool valid, const std::string& name, const std::string& value, const std::string& range) {
     if (!valid) throw Error(ErrorCode::InvalidOption, "--" + name + " " + value + ": must be " + range);
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -6,15 +6,15 @@ namespace vdbsynth {
 
 /// Why an operation failed. The command line maps every code to one exit code (see `exitCode`).
 enum class ErrorCode {
-    InvalidOption, ///< an option is unknown, missing or out of its range
-    ShapeMismatch, ///< two inputs whose sizes, voxel sizes or domains do not fit together
-    EmptyInput,    ///< a readable input with nothing in it (no faces, no active voxels)
-    Unusable,      ///< a readable input that this operation cannot work on
-    Io,            ///< a file that is missing, a directory, not readable or not writable
-    BadData,       ///< a file that is truncated, corrupt, holds NaN or a kind of grid nobody can use
-    Memory,        ///< more memory than allowed or present
-    Solver,        ///< a numerical method did not reach its goal
-    Cancelled      ///< the caller asked for a stop; nothing was returned or written
+    InvalidOption,  ///< an option is unknown, missing or out of its range
+    ShapeMismatch,  ///< two inputs whose sizes, voxel sizes or domains do not fit together
+    EmptyInput,     ///< a readable input with nothing in it (no faces, no active voxels)
+    Unusable,       ///< a readable input that this operation cannot work on
+    Io,             ///< a file that is missing, a directory, not readable or not writable
+    BadData,        ///< a file that is truncated, corrupt, holds NaN or a kind of grid nobody can use
+    Memory,         ///< more memory than allowed or present
+    Solver,         ///< a numerical method did not reach its goal
+    Cancelled       ///< the caller asked for a stop; nothing was returned or written
 };
 
 /// The one exception type of the library. The message is one line that names the file or the option,
@@ -36,7 +36,6 @@ int exitCode(ErrorCode code) noexcept;
 /// @param name   option name as on the command line, without dashes
 /// @param value  the refused value as text
 /// @param range  the allowed range in words, for example "a whole number from 4 to 256"
-void requireOption(bool valid, const std::string& name, const std::string& value,
-                   const std::string& range);
+void requireOption(bool valid, const std::string& name, const std::string& value, const std::string& range);
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -19,7 +19,7 @@ std::string hexadecimal(const XXH128_hash_t& hash) {
     return text;
 }
 
-} // namespace
+}  // namespace
 
 std::string contentHash(const void* data, std::size_t bytes) {
     return hexadecimal(XXH3_128bits(data, bytes));
@@ -44,4 +44,4 @@ std::uint64_t hash64(const void* data, std::size_t bytes, std::uint64_t seed) no
     return XXH3_64bits_withSeed(data, bytes, seed);
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

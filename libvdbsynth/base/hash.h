@@ -15,4 +15,4 @@ std::string fileHash(const std::string& path);
 /// 64-bit hash, for tables.
 std::uint64_t hash64(const void* data, std::size_t bytes, std::uint64_t seed = 0) noexcept;
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -25,12 +25,12 @@ void parallelFor(const RunContext& ctx, std::size_t count, std::size_t grain,
         return;
     }
     const ThreadLimit limit(ctx);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chunks, 1),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                          for (auto chunk = range.begin(); chunk != range.end(); ++chunk)
-                              runChunk(chunk);
-                      },
-                      tbb::simple_partitioner());
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, chunks, 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+            for (auto chunk = range.begin(); chunk != range.end(); ++chunk) runChunk(chunk);
+        },
+        tbb::simple_partitioner());
 }
 
 struct ThreadLimit::Impl {
@@ -39,10 +39,10 @@ struct ThreadLimit::Impl {
 
 ThreadLimit::ThreadLimit(const RunContext& ctx) : mImpl(new Impl) {
     if (ctx.threads > 0)
-        mImpl->control = std::make_unique<tbb::global_control>(
-            tbb::global_control::max_allowed_parallelism, std::size_t(ctx.threads));
+        mImpl->control = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                               std::size_t(ctx.threads));
 }
 
 ThreadLimit::~ThreadLimit() = default;
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

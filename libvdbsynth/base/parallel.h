@@ -29,4 +29,4 @@ private:
     std::unique_ptr<Impl> mImpl;
 };
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

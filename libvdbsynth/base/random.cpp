@@ -34,7 +34,9 @@ double Random::uniform() noexcept {
     return double((high << 26) | low) * 0x1.0p-53;
 }
 
-double Random::uniform(double low, double high) noexcept { return low + (high - low) * uniform(); }
+double Random::uniform(double low, double high) noexcept {
+    return low + (high - low) * uniform();
+}
 
 std::uint32_t Random::below(std::uint32_t count) noexcept {
     return std::uint32_t((std::uint64_t(bits()) * count) >> 32);
@@ -46,4 +48,4 @@ double Random::normal() noexcept {
     return sum;
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

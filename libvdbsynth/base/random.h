@@ -37,4 +37,4 @@ private:
 std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter,
                                     std::array<std::uint32_t, 2> key) noexcept;
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

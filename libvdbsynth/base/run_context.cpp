@@ -17,17 +17,15 @@ void message(const RunContext& ctx, MessageLevel level, const std::string& text)
     if (ctx.onMessage) ctx.onMessage(level, text);
 }
 
-void requireMemory(const RunContext& ctx, double bytes, const std::string& what,
-                   const std::string& hint) {
+void requireMemory(const RunContext& ctx, double bytes, const std::string& what, const std::string& hint) {
     if (ctx.maxMemory == 0 || bytes <= double(ctx.maxMemory)) return;
     char text[96];
-    std::snprintf(text, sizeof text, " needs about %.3g GB, over --max-memory %.3g GB; ",
-                  bytes / 1e9, double(ctx.maxMemory) / 1e9);
+    std::snprintf(text, sizeof text, " needs about %.3g GB, over --max-memory %.3g GB; ", bytes / 1e9,
+                  double(ctx.maxMemory) / 1e9);
     throw Error(ErrorCode::Memory, what + text + hint);
 }
 
-Stage::Stage(const RunContext& ctx, std::string name, std::size_t total, bool reading)
-    : mContext(ctx) {
+Stage::Stage(const RunContext& ctx, std::string name, std::size_t total, bool reading) : mContext(ctx) {
     mProgress.stage = std::move(name);
     mProgress.total = std::max<std::size_t>(total, 1);
     mProgress.reading = reading;
@@ -39,10 +37,9 @@ void Stage::advance(std::size_t units) {
     throwIfCancelled(mContext);
     mProgress.done = std::min(mProgress.done + units, mProgress.total);
     if (!mContext.onProgress) return;
-    if (mProgress.done < mProgress.total &&
-        (mProgress.done - mReported) * 100 < mProgress.total) return;
+    if (mProgress.done < mProgress.total && (mProgress.done - mReported) * 100 < mProgress.total) return;
     mReported = mProgress.done;
     mContext.onProgress(mProgress);
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

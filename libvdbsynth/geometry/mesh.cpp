@@ -20,9 +20,8 @@ std::vector<Edge> sortedEdges(const Mesh& mesh) {
         for (std::size_t i = 0; i < 3; ++i) add(t[i], t[(i + 1) % 3]);
     for (const Quad& q : mesh.quads)
         for (std::size_t i = 0; i < 4; ++i) add(q[i], q[(i + 1) % 4]);
-    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-        return a.low != b.low ? a.low < b.low : a.high < b.high;
-    });
+    std::sort(edges.begin(), edges.end(),
+              [](const Edge& a, const Edge& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; });
     return edges;
 }
 
@@ -41,7 +40,7 @@ void countEdges(const Mesh& mesh, MeshSummary& summary) {
     }
 }
 
-} // namespace
+}  // namespace
 
 void appendPolygon(Mesh& mesh, const std::uint32_t* corners, std::size_t count) {
     if (count == 3) mesh.triangles.push_back({corners[0], corners[1], corners[2]});
@@ -96,4 +95,4 @@ MeshSummary summarize(const Mesh& mesh) {
     return summary;
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -13,9 +13,9 @@ using Quad = std::array<std::uint32_t, 4>;
 
 /// A polygon mesh of triangles and quads. Faces run counter-clockwise seen from outside.
 struct Mesh {
-    std::vector<Vec3f> points;         ///< [vertices] world space
-    std::vector<Triangle> triangles;   ///< [triangles x 3] indices into points
-    std::vector<Quad> quads;           ///< [quads x 4] indices into points
+    std::vector<Vec3f> points;        ///< [vertices] world space
+    std::vector<Triangle> triangles;  ///< [triangles x 3] indices into points
+    std::vector<Quad> quads;          ///< [quads x 4] indices into points
 
     std::size_t faceCount() const { return triangles.size() + quads.size(); }
 };
@@ -31,7 +31,9 @@ struct MeshSummary {
     double area = 0;                   ///< [world^2]
     Vec3d boxMin, boxMax;              ///< [world] of the points that faces use
 
-    bool closedManifold() const { return faces > 0 && openEdges == 0 && nonManifoldEdges == 0 && misorientedEdges == 0; }
+    bool closedManifold() const {
+        return faces > 0 && openEdges == 0 && nonManifoldEdges == 0 && misorientedEdges == 0;
+    }
 };
 
 /// Appends a convex polygon: three corners as a triangle, four as a quad, more as a fan.
@@ -56,4 +58,4 @@ MeshSummary summarize(const Mesh& mesh);
 /// @par Cost    O(faces log faces)   @par Repeats yes
 std::size_t separateNonManifold(Mesh& mesh, float gap);
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -12,7 +12,7 @@ namespace {
 // One side of a face: the directed edge from corner `from` to corner `to` (corner numbers count the
 // corners of all faces one after another).
 struct Side {
-    std::uint32_t low, high;   // vertices
+    std::uint32_t low, high;  // vertices
     std::uint32_t face, from, to;
     bool forward;
 };
@@ -111,7 +111,7 @@ void pairAround(Sets& sets, const Mesh& mesh, const Faces& faces, const std::vec
     }
 }
 
-} // namespace
+}  // namespace
 
 std::size_t separateNonManifold(Mesh& mesh, float gap) {
     const Faces faces = cornersOf(mesh);
@@ -120,8 +120,10 @@ std::size_t separateNonManifold(Mesh& mesh, float gap) {
     for (std::size_t i = 0; i < sides.size();) {
         std::size_t j = i;
         while (j < sides.size() && sides[j].low == sides[i].low && sides[j].high == sides[i].high) ++j;
-        if (j - i == 2) joinAcross(sets, faces, sides[i], sides[i + 1]);
-        else if (j - i > 2) pairAround(sets, mesh, faces, sides, i, j);
+        if (j - i == 2)
+            joinAcross(sets, faces, sides[i], sides[i + 1]);
+        else if (j - i > 2)
+            pairAround(sets, mesh, faces, sides, i, j);
         i = j;
     }
     // The fan with the smallest corner keeps the vertex; every other fan gets a copy.
@@ -131,8 +133,10 @@ std::size_t separateNonManifold(Mesh& mesh, float gap) {
     std::vector<char> split(before, 0);
     for (std::uint32_t c = 0; c < faces.vertex.size(); ++c) {
         const std::uint32_t root = sets.find(c), v = faces.vertex[c];
-        if (root == c && owner[v] == kNone) { owner[v] = c; newVertex[c] = v; }
-        else if (root == c) {
+        if (root == c && owner[v] == kNone) {
+            owner[v] = c;
+            newVertex[c] = v;
+        } else if (root == c) {
             newVertex[c] = std::uint32_t(mesh.points.size());
             mesh.points.push_back(mesh.points[v]);
             split[v] = 1;
@@ -163,4 +167,4 @@ std::size_t separateNonManifold(Mesh& mesh, float gap) {
     return added;
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -11,4 +11,4 @@ struct PointCloud {
     std::vector<Vec3f> normals;  ///< [points], or empty
 };
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -16,7 +16,7 @@ bool isConstant(const float* samples, std::size_t count) {
     return true;
 }
 
-} // namespace
+}  // namespace
 
 BrickField::BrickField(const IndexBox& box, float value) : mBox(box) {
     if (box.empty()) throw Error(ErrorCode::InvalidOption, "a field needs a box of at least one voxel");
@@ -115,8 +115,10 @@ void BrickField::writeBox(const Index3& corner, const Index3& size, const float*
     for (int x = part.min.x; x <= part.max.x; ++x) {
         for (int y = part.min.y; y <= part.max.y; ++y) {
             for (int z = part.min.z; z <= part.max.z; ++z) {
-                const std::size_t source = (std::size_t(x - corner.x) * std::size_t(size.y) + std::size_t(y - corner.y)) *
-                                               std::size_t(size.z) + std::size_t(z - corner.z);
+                const std::size_t source =
+                    (std::size_t(x - corner.x) * std::size_t(size.y) + std::size_t(y - corner.y)) *
+                        std::size_t(size.z) +
+                    std::size_t(z - corner.z);
                 if (mask && !mask[source]) continue;
                 const int lx = x - mBox.min.x, ly = y - mBox.min.y, lz = z - mBox.min.z;
                 const std::size_t brick = brickIndex(lx / kSide, ly / kSide, lz / kSide);
@@ -136,8 +138,10 @@ bool BrickField::constantIn(const IndexBox& region, float& value) const {
             for (int bz = (part.min.z - mBox.min.z) / kSide; bz <= (part.max.z - mBox.min.z) / kSide; ++bz) {
                 const std::size_t brick = brickIndex(bx, by, bz);
                 if (mSlots[brick] >= 0) return false;
-                if (first) value = mConstants[brick];
-                else if (mConstants[brick] != value) return false;
+                if (first)
+                    value = mConstants[brick];
+                else if (mConstants[brick] != value)
+                    return false;
                 first = false;
             }
     return true;
@@ -147,4 +151,4 @@ std::size_t BrickField::memoryBytes() const {
     return mSlots.size() * (sizeof(std::int32_t) + sizeof(float)) + mSamples.size() * sizeof(float);
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

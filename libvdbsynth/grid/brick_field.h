@@ -37,7 +37,8 @@ public:
         const std::size_t brick = brickIndex(x >> 3, y >> 3, z >> 3);
         const std::int32_t slot = mSlots[brick];
         if (slot < 0) return mConstants[brick];
-        return mSamples[std::size_t(slot) * kSamples + std::size_t((((x & 7) << 3) | (y & 7)) << 3 | (z & 7))];
+        return mSamples[std::size_t(slot) * kSamples +
+                        std::size_t((((x & 7) << 3) | (y & 7)) << 3 | (z & 7))];
     }
     /// Copies the samples of [corner, corner + size) to out, x slowest, z fastest. Samples outside
     /// the box are those of the nearest voxel inside.
@@ -55,7 +56,8 @@ public:
 
 private:
     std::size_t brickIndex(int bx, int by, int bz) const {
-        return (std::size_t(bx) * std::size_t(mBricks.y) + std::size_t(by)) * std::size_t(mBricks.z) + std::size_t(bz);
+        return (std::size_t(bx) * std::size_t(mBricks.y) + std::size_t(by)) * std::size_t(mBricks.z) +
+               std::size_t(bz);
     }
     const float* brickRow(std::size_t brick, int lx, int ly) const {
         return mSamples.data() + std::size_t(mSlots[brick]) * kSamples + (lx * kSide + ly) * kSide;
@@ -69,4 +71,4 @@ private:
     std::vector<float> mSamples;       // kSamples floats a stored brick
 };
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

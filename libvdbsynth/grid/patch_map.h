@@ -10,14 +10,16 @@ namespace vdbsynth {
 
 /// The result of a block synthesis as what was copied from where: on a lattice of overlapping blocks over the
 /// target, the exemplar's block that each was matched to. Any grid of the exemplar is read through it.
-/// Block (a, b, c) begins at target voxel (origin(0,a), origin(1,b), origin(2,c)); origins are multiples of the
-/// stride, the last one is pulled back so that its block ends with the target.
+/// Block (a, b, c) begins at target voxel (origin(0,a), origin(1,b), origin(2,c)); origins are multiples of
+/// the stride, the last one is pulled back so that its block ends with the target.
 struct PatchMap {
-    Index3 target{0, 0, 0};          ///< size of the target [voxels]
-    int block = 16;                  ///< N [voxels]
-    int stride = 8;                  ///< [voxels], 1..N
-    int overhang = 0;                ///< voxels by which the last block may end beyond the target (a map scaled from an odd size)
-    std::vector<Index3> source;      ///< [lattice, x slowest, z fastest] minimum corner of the matched block in its exemplar
+    Index3 target{0, 0, 0};  ///< size of the target [voxels]
+    int block = 16;          ///< N [voxels]
+    int stride = 8;          ///< [voxels], 1..N
+    int overhang =
+        0;  ///< voxels by which the last block may end beyond the target (a map scaled from an odd size)
+    std::vector<Index3>
+        source;  ///< [lattice, x slowest, z fastest] minimum corner of the matched block in its exemplar
     std::vector<std::int32_t> exemplar;  ///< [lattice] number of the exemplar
 
     /// Number of blocks along each axis.
@@ -50,6 +52,8 @@ Index3 strongestBlock(const PatchMap& map, const Index3& voxel);
 /// @param exemplars  by number; boxes begin at 0
 /// @par Cost    O(target voxels in bricks that are not constant * (block / stride)^3)
 /// @par Repeats same bits for any number of threads
-BrickField voteThroughMap(const PatchMap& map, const std::vector<std::shared_ptr<const BrickField>>& exemplars, const RunContext& ctx = {});
+BrickField voteThroughMap(const PatchMap& map,
+                          const std::vector<std::shared_ptr<const BrickField>>& exemplars,
+                          const RunContext& ctx = {});
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

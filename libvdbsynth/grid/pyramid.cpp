@@ -17,16 +17,18 @@ void sumAndTurn(const std::vector<double>& in, int nx, int ny, int nz, int cell,
     out.assign(std::size_t(mz) * std::size_t(nx) * std::size_t(ny), 0.0);
     for (int x = 0; x < nx; ++x)
         for (int y = 0; y < ny; ++y) {
-            const double* row = in.data() + (std::size_t(x) * std::size_t(ny) + std::size_t(y)) * std::size_t(nz);
+            const double* row =
+                in.data() + (std::size_t(x) * std::size_t(ny) + std::size_t(y)) * std::size_t(nz);
             for (int z = 0; z < mz; ++z) {
                 double sum = 0;
                 for (int k = 0; k < cell; ++k) sum += row[z + k];
-                out[(std::size_t(z) * std::size_t(nx) + std::size_t(x)) * std::size_t(ny) + std::size_t(y)] = sum;
+                out[(std::size_t(z) * std::size_t(nx) + std::size_t(x)) * std::size_t(ny) + std::size_t(y)] =
+                    sum;
             }
         }
 }
 
-} // namespace
+}  // namespace
 
 BrickField slidingMean(const BrickField& field, int cell, const RunContext& ctx) {
     if (cell < 1) throw Error(ErrorCode::InvalidOption, "cell of an average must be at least 1");
@@ -64,8 +66,9 @@ BrickField halved(const BrickField& field, const RunContext& ctx) {
                 for (int z = 0; z < kSide; ++z) {
                     double sum = 0;
                     for (int corner = 0; corner < 8; ++corner)
-                        sum += values[std::size_t(((2 * x + (corner >> 2)) * 2 * kSide + 2 * y + ((corner >> 1) & 1)) * 2 * kSide +
-                                                  2 * z + (corner & 1))];
+                        sum += values[std::size_t(
+                            ((2 * x + (corner >> 2)) * 2 * kSide + 2 * y + ((corner >> 1) & 1)) * 2 * kSide +
+                            2 * z + (corner & 1))];
                     *samples++ = float(sum * 0.125);
                 }
     });
@@ -95,4 +98,4 @@ BrickField doubled(const BrickField& field, const Index3& size, const RunContext
     });
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

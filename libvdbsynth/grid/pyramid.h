@@ -13,7 +13,8 @@ namespace vdbsynth {
 BrickField slidingMean(const BrickField& field, int cell, const RunContext& ctx = {});
 
 /// The field at half the resolution: the mean of each 2x2x2 cube [lagae2004, section 5.2]. The result's
-/// box starts at 0 and has ceil(n/2) voxels a side; the half-filled last layer of an odd side averages the samples there are.
+/// box starts at 0 and has ceil(n/2) voxels a side; the half-filled last layer of an odd side averages the
+/// samples there are.
 /// @param field  box starting at 0
 BrickField halved(const BrickField& field, const RunContext& ctx = {});
 
@@ -21,4 +22,4 @@ BrickField halved(const BrickField& field, const RunContext& ctx = {});
 /// of the coarse voxels (the inverse placement of `halved`).
 BrickField doubled(const BrickField& field, const Index3& size, const RunContext& ctx = {});
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

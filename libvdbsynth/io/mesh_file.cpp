@@ -18,9 +18,12 @@ void checkFaces(const std::string& path, const Mesh& mesh) {
             throw Error(ErrorCode::BadData, path + ": a face uses vertex " + std::to_string(index) + " of " +
                                                 std::to_string(mesh.points.size()) + " (counting from 0)");
     };
-    for (const Triangle& t : mesh.triangles) for (std::uint32_t i : t) check(i);
-    for (const Quad& q : mesh.quads) for (std::uint32_t i : q) check(i);
-    if (mesh.faceCount() == 0) throw Error(ErrorCode::EmptyInput, path + ": no faces; a mesh with at least one face is needed");
+    for (const Triangle& t : mesh.triangles)
+        for (std::uint32_t i : t) check(i);
+    for (const Quad& q : mesh.quads)
+        for (std::uint32_t i : q) check(i);
+    if (mesh.faceCount() == 0)
+        throw Error(ErrorCode::EmptyInput, path + ": no faces; a mesh with at least one face is needed");
 }
 
 class Output {
@@ -48,7 +51,8 @@ void appendPoint(std::string& text, const Vec3f& p) {
 }
 
 template <typename Face>
-void appendFaces(std::string& text, const std::vector<Face>& faces, const std::string& prefix, std::uint32_t first) {
+void appendFaces(std::string& text, const std::vector<Face>& faces, const std::string& prefix,
+                 std::uint32_t first) {
     for (const Face& face : faces) {
         text += prefix;
         for (std::uint32_t index : face) text += ' ' + std::to_string(index + first);
@@ -68,7 +72,8 @@ std::string objText(const Mesh& mesh) {
 }
 
 std::string offText(const Mesh& mesh) {
-    std::string text = "OFF\n" + std::to_string(mesh.points.size()) + ' ' + std::to_string(mesh.faceCount()) + " 0\n";
+    std::string text =
+        "OFF\n" + std::to_string(mesh.points.size()) + ' ' + std::to_string(mesh.faceCount()) + " 0\n";
     for (const Vec3f& p : mesh.points) appendPoint(text, p);
     appendFaces(text, mesh.triangles, "3", 0);
     appendFaces(text, mesh.quads, "4", 0);
@@ -84,10 +89,17 @@ std::string plyBytes(const Mesh& mesh) {
     std::string text = "ply\nformat binary_little_endian 1.0\ncomment vdb_synth\nelement vertex " +
                        std::to_string(mesh.points.size()) +
                        "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-                       std::to_string(mesh.faceCount()) + "\nproperty list uchar uint vertex_indices\nend_header\n";
+                       std::to_string(mesh.faceCount()) +
+                       "\nproperty list uchar uint vertex_indices\nend_header\n";
     for (const Vec3f& p : mesh.points) appendBytes(text, p);
-    for (const Triangle& t : mesh.triangles) { text += char(3); appendBytes(text, t); }
-    for (const Quad& q : mesh.quads) { text += char(4); appendBytes(text, q); }
+    for (const Triangle& t : mesh.triangles) {
+        text += char(3);
+        appendBytes(text, t);
+    }
+    for (const Quad& q : mesh.quads) {
+        text += char(4);
+        appendBytes(text, q);
+    }
     return text;
 }
 
@@ -107,32 +119,46 @@ std::string stlBytes(const Mesh& mesh) {
     return text;
 }
 
-} // namespace
+}  // namespace
 
 bool meshFormatOf(const std::string& path, MeshFormat& format) {
     const std::string extension = extensionOf(path);
-    if (extension == "obj") format = MeshFormat::Obj;
-    else if (extension == "ply") format = MeshFormat::Ply;
-    else if (extension == "stl") format = MeshFormat::Stl;
-    else if (extension == "off") format = MeshFormat::Off;
-    else return false;
+    if (extension == "obj")
+        format = MeshFormat::Obj;
+    else if (extension == "ply")
+        format = MeshFormat::Ply;
+    else if (extension == "stl")
+        format = MeshFormat::Stl;
+    else if (extension == "off")
+        format = MeshFormat::Off;
+    else
+        return false;
     return true;
 }
 
 Mesh readMesh(const std::string& path, const RunContext& ctx) {
     MeshFormat format{};
     if (!meshFormatOf(path, format))
-        throw Error(ErrorCode::InvalidOption, path + ": unknown extension; meshes are .obj, .ply, .stl or .off");
+        throw Error(ErrorCode::InvalidOption,
+                    path + ": unknown extension; meshes are .obj, .ply, .stl or .off");
     Stage stage(ctx, "reading " + path, 2, /* reading= */ true);
     const std::string content = readWholeFile(path);
     stage.advance();
     if (content.empty()) throw Error(ErrorCode::BadData, path + ": the file is empty");
     Mesh mesh;
     switch (format) {
-        case MeshFormat::Obj: mesh = readObj(path, content); break;
-        case MeshFormat::Ply: mesh = readPly(path, content); break;
-        case MeshFormat::Stl: mesh = readStl(path, content); break;
-        case MeshFormat::Off: mesh = readOff(path, content); break;
+        case MeshFormat::Obj:
+            mesh = readObj(path, content);
+            break;
+        case MeshFormat::Ply:
+            mesh = readPly(path, content);
+            break;
+        case MeshFormat::Stl:
+            mesh = readStl(path, content);
+            break;
+        case MeshFormat::Off:
+            mesh = readOff(path, content);
+            break;
     }
     checkFaces(path, mesh);
     stage.advance();
@@ -142,10 +168,18 @@ Mesh readMesh(const std::string& path, const RunContext& ctx) {
 void writeMesh(const std::string& path, MeshFormat format, const Mesh& mesh) {
     Output output(path);
     switch (format) {
-        case MeshFormat::Obj: output.write(objText(mesh)); break;
-        case MeshFormat::Ply: output.write(plyBytes(mesh)); break;
-        case MeshFormat::Stl: output.write(stlBytes(mesh)); break;
-        case MeshFormat::Off: output.write(offText(mesh)); break;
+        case MeshFormat::Obj:
+            output.write(objText(mesh));
+            break;
+        case MeshFormat::Ply:
+            output.write(plyBytes(mesh));
+            break;
+        case MeshFormat::Stl:
+            output.write(stlBytes(mesh));
+            break;
+        case MeshFormat::Off:
+            output.write(offText(mesh));
+            break;
     }
     output.finish();
 }
@@ -153,7 +187,8 @@ void writeMesh(const std::string& path, MeshFormat format, const Mesh& mesh) {
 void writePointsPly(const std::string& path, const PointCloud& cloud) {
     const bool normals = cloud.normals.size() == cloud.points.size();
     std::string text = "ply\nformat binary_little_endian 1.0\ncomment vdb_synth\nelement vertex " +
-                       std::to_string(cloud.points.size()) + "\nproperty float x\nproperty float y\nproperty float z\n";
+                       std::to_string(cloud.points.size()) +
+                       "\nproperty float x\nproperty float y\nproperty float z\n";
     if (normals) text += "property float nx\nproperty float ny\nproperty float nz\n";
     text += "end_header\n";
     for (std::size_t i = 0; i < cloud.points.size(); ++i) {
@@ -165,4 +200,4 @@ void writePointsPly(const std::string& path, const PointCloud& cloud) {
     output.finish();
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -15,7 +15,8 @@ bool meshFormatOf(const std::string& path, MeshFormat& format);
 
 /// Reads a triangle or polygon mesh. Strict: counts are checked against the file's size before anything
 /// is allocated, indices against the vertices, coordinates for finiteness. STL corners with the same bits
-/// are welded. Polygons of more than four corners become fans; texture coordinates, colours and unknown properties are passed over.
+/// are welded. Polygons of more than four corners become fans; texture coordinates, colours and unknown
+/// properties are passed over.
 /// @throw Error  Io (missing, a directory, not readable), BadData (truncated, corrupt, an index out of
 ///               range, NaN or infinite coordinates), EmptyInput (no faces)
 /// @par Cost     O(file size) time and memory    @par Repeats yes
@@ -31,4 +32,4 @@ void writeMesh(const std::string& path, MeshFormat format, const Mesh& mesh);
 /// @throw Error Io
 void writePointsPly(const std::string& path, const PointCloud& cloud);
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

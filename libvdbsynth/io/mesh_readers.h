@@ -13,4 +13,4 @@ Mesh readOff(const std::string& path, const std::string& content);
 Mesh readPly(const std::string& path, const std::string& content);
 Mesh readStl(const std::string& path, const std::string& content);
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -19,14 +19,15 @@ void checkVertexLines(const std::string& path, const std::string& content) {
                 const std::string_view number = scanner.wordOnLine();
                 float value = 0;
                 if (number.empty()) scanner.fail("a vertex has fewer than three coordinates");
-                if (!parseReal(number, value)) scanner.fail("\"" + std::string(number.substr(0, 40)) + "\" is not a number");
+                if (!parseReal(number, value))
+                    scanner.fail("\"" + std::string(number.substr(0, 40)) + "\" is not a number");
                 if (!(value - value == 0.f)) scanner.fail("a coordinate is not a finite number");
             }
         scanner.skipLine();
     }
 }
 
-} // namespace
+}  // namespace
 
 Mesh readObj(const std::string& path, const std::string& content) {
     checkVertexLines(path, content);
@@ -35,15 +36,16 @@ Mesh readObj(const std::string& path, const std::string& content) {
     std::vector<tinyobj::material_t> materials;
     std::string warning, problem;
     std::istringstream stream(content);
-    const bool ok = tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &problem, &stream,
-                                     nullptr, /* triangulate= */ false);
+    const bool ok = tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &problem, &stream, nullptr,
+                                     /* triangulate= */ false);
     if (!ok) {
         problem = problem.substr(0, problem.find('\n'));
         throw Error(ErrorCode::BadData, path + ": " + (problem.empty() ? "not a valid OBJ file" : problem));
     }
     Mesh mesh;
     for (std::size_t i = 0; i + 2 < attributes.vertices.size(); i += 3)
-        mesh.points.push_back({attributes.vertices[i], attributes.vertices[i + 1], attributes.vertices[i + 2]});
+        mesh.points.push_back(
+            {attributes.vertices[i], attributes.vertices[i + 1], attributes.vertices[i + 2]});
     std::vector<std::uint32_t> corners;
     for (const tinyobj::shape_t& shape : shapes) {
         std::size_t at = 0;
@@ -58,4 +60,4 @@ Mesh readObj(const std::string& path, const std::string& content) {
     return mesh;
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -11,17 +11,21 @@ Mesh readOff(const std::string& path, const std::string& content) {
     const std::size_t suffix = header.size() >= 3 ? header.size() - 3 : 0;
     if (header.size() < 3 || header.substr(suffix) != "OFF" || header.size() > 6)
         scanner.fail("not an OFF file: it must begin with OFF");
-    if (header.find('4') != std::string_view::npos) scanner.fail("4-dimensional OFF is not supported; convert it to OFF");
+    if (header.find('4') != std::string_view::npos)
+        scanner.fail("4-dimensional OFF is not supported; convert it to OFF");
     {
         TextScanner ahead = scanner;
-        if (ahead.wordOnLine() == "BINARY") scanner.fail("binary OFF is not supported; convert it to ascii OFF or ply");
+        if (ahead.wordOnLine() == "BINARY")
+            scanner.fail("binary OFF is not supported; convert it to ascii OFF or ply");
     }
     const std::int64_t vertices = scanner.whole(), faces = scanner.whole();
     scanner.whole();  // edges, often 0 and never needed
     // Every vertex takes at least six characters and every face eight.
-    if (vertices < 0 || faces < 0 || vertices > std::int64_t(content.size() / 6 + 1) || faces > std::int64_t(content.size() / 4 + 1))
-        throw Error(ErrorCode::BadData, path + ": the header claims " + std::to_string(vertices) + " vertices and " +
-                                            std::to_string(faces) + " faces, more than the file can hold");
+    if (vertices < 0 || faces < 0 || vertices > std::int64_t(content.size() / 6 + 1) ||
+        faces > std::int64_t(content.size() / 4 + 1))
+        throw Error(ErrorCode::BadData, path + ": the header claims " + std::to_string(vertices) +
+                                            " vertices and " + std::to_string(faces) +
+                                            " faces, more than the file can hold");
     Mesh mesh;
     mesh.points.reserve(std::size_t(vertices));
     for (std::int64_t i = 0; i < vertices; ++i) {
@@ -40,7 +44,8 @@ Mesh readOff(const std::string& path, const std::string& content) {
         for (std::int64_t c = 0; c < count; ++c) {
             const std::int64_t index = scanner.whole();
             if (index < 0 || index >= vertices)
-                scanner.fail("vertex " + std::to_string(index) + " of " + std::to_string(vertices) + " does not exist (counting from 0)");
+                scanner.fail("vertex " + std::to_string(index) + " of " + std::to_string(vertices) +
+                             " does not exist (counting from 0)");
             corners.push_back(std::uint32_t(index));
         }
         appendPolygon(mesh, corners.data(), corners.size());
@@ -49,4 +54,4 @@ Mesh readOff(const std::string& path, const std::string& content) {
     return mesh;
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

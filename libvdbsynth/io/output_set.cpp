@@ -29,9 +29,12 @@ void removeStale(const std::string& folder, const std::string& name) {
     for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
         const std::string found = entry.path().filename().string();
         if (found.size() <= prefix.size() + 4 || found.compare(0, prefix.size(), prefix) != 0 ||
-            found.compare(found.size() - 4, 4, ".tmp") != 0) continue;
+            found.compare(found.size() - 4, 4, ".tmp") != 0)
+            continue;
         const std::string digits = found.substr(prefix.size(), found.size() - prefix.size() - 4);
-        if (digits.empty() || digits.size() > 9 || digits.find_first_not_of("0123456789") != std::string::npos) continue;
+        if (digits.empty() || digits.size() > 9 ||
+            digits.find_first_not_of("0123456789") != std::string::npos)
+            continue;
         const pid_t process = pid_t(std::stol(digits));
         if (::kill(process, 0) != 0 && errno == ESRCH) std::filesystem::remove(entry.path(), ignored);
     }
@@ -47,9 +50,10 @@ void syncToDisk(const std::string& temporary, const std::string& path) {
     if (result != 0 && reason != EINVAL) failIo(path, "writing failed");
 }
 
-} // namespace
+}  // namespace
 
-OutputSet::OutputSet(std::function<void(const std::string&)> onTemporary) : mOnTemporary(std::move(onTemporary)) {}
+OutputSet::OutputSet(std::function<void(const std::string&)> onTemporary)
+    : mOnTemporary(std::move(onTemporary)) {}
 
 OutputSet::~OutputSet() {
     for (const Entry& entry : mEntries) ::unlink(entry.temporary.c_str());
@@ -62,7 +66,8 @@ std::string OutputSet::add(const std::string& path) {
     if (::stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode))
         throw Error(ErrorCode::Io, path + ": is a directory; name a file");
     const std::string folder = folderOf(path), name = fileNameOf(path);
-    if (::stat(folder.c_str(), &status) != 0) throw Error(ErrorCode::Io, path + ": the folder " + folder + " does not exist");
+    if (::stat(folder.c_str(), &status) != 0)
+        throw Error(ErrorCode::Io, path + ": the folder " + folder + " does not exist");
     removeStale(folder, name);
     const std::string temporary = folder + "/." + name + "." + std::to_string(::getpid()) + ".tmp";
     if (mOnTemporary) mOnTemporary(temporary);
@@ -77,9 +82,10 @@ void OutputSet::commit() {
     for (const Entry& entry : mEntries) syncToDisk(entry.temporary, entry.path);
     while (!mEntries.empty()) {
         const Entry entry = mEntries.front();
-        if (::rename(entry.temporary.c_str(), entry.path.c_str()) != 0) failIo(entry.path, "cannot be written");
+        if (::rename(entry.temporary.c_str(), entry.path.c_str()) != 0)
+            failIo(entry.path, "cannot be written");
         mEntries.erase(mEntries.begin());
     }
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

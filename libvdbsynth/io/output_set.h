@@ -33,4 +33,4 @@ private:
     std::function<void(const std::string&)> mOnTemporary;
 };
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -26,4 +26,4 @@ std::string folderOf(const std::string& path) {
     return slash == 0 ? "/" : path.substr(0, slash);
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -10,4 +10,4 @@ std::string fileNameOf(const std::string& path);
 /// Folder of a path, "." if it names none.
 std::string folderOf(const std::string& path);
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

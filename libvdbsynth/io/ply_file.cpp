@@ -41,12 +41,17 @@ std::size_t sizeOf(Type type) {
 
 bool typeOf(std::string_view name, Type& type) {
     static const std::pair<const char*, Type> names[] = {
-        {"char", Type::Int8}, {"int8", Type::Int8}, {"uchar", Type::UInt8}, {"uint8", Type::UInt8},
-        {"short", Type::Int16}, {"int16", Type::Int16}, {"ushort", Type::UInt16}, {"uint16", Type::UInt16},
-        {"int", Type::Int32}, {"int32", Type::Int32}, {"uint", Type::UInt32}, {"uint32", Type::UInt32},
-        {"float", Type::Float}, {"float32", Type::Float}, {"double", Type::Double}, {"float64", Type::Double}};
+        {"char", Type::Int8},     {"int8", Type::Int8},     {"uchar", Type::UInt8},
+        {"uint8", Type::UInt8},   {"short", Type::Int16},   {"int16", Type::Int16},
+        {"ushort", Type::UInt16}, {"uint16", Type::UInt16}, {"int", Type::Int32},
+        {"int32", Type::Int32},   {"uint", Type::UInt32},   {"uint32", Type::UInt32},
+        {"float", Type::Float},   {"float32", Type::Float}, {"double", Type::Double},
+        {"float64", Type::Double}};
     for (const auto& [text, value] : names)
-        if (name == text) { type = value; return true; }
+        if (name == text) {
+            type = value;
+            return true;
+        }
     return false;
 }
 
@@ -58,14 +63,16 @@ Property readProperty(TextScanner& scanner) {
         if (!typeOf(scanner.wordOnLine(), property.count)) scanner.fail("unknown type of a list's length");
         word = scanner.wordOnLine();
     }
-    if (!typeOf(word, property.value)) scanner.fail("unknown property type \"" + std::string(word.substr(0, 40)) + "\"");
+    if (!typeOf(word, property.value))
+        scanner.fail("unknown property type \"" + std::string(word.substr(0, 40)) + "\"");
     property.name = std::string(scanner.wordOnLine());
     return property;
 }
 
 Header readHeader(const std::string& path, const std::string& content) {
     TextScanner scanner(path, content, '\0');
-    if (scanner.wordOnLine() != "ply") throw Error(ErrorCode::BadData, path + ": not a PLY file: it must begin with ply");
+    if (scanner.wordOnLine() != "ply")
+        throw Error(ErrorCode::BadData, path + ": not a PLY file: it must begin with ply");
     Header header;
     bool format = false;
     while (!scanner.atEnd()) {
@@ -74,7 +81,9 @@ Header readHeader(const std::string& path, const std::string& content) {
             const std::string_view name = scanner.wordOnLine();
             format = name == "ascii" || name == "binary_little_endian" || name == "binary_big_endian";
             if (!format) scanner.fail("unknown format \"" + std::string(name.substr(0, 40)) + "\"");
-            header.encoding = name == "ascii" ? Encoding::Ascii : name == "binary_big_endian" ? Encoding::Big : Encoding::Little;
+            header.encoding = name == "ascii"               ? Encoding::Ascii
+                              : name == "binary_big_endian" ? Encoding::Big
+                                                            : Encoding::Little;
         } else if (word == "element") {
             Element element;
             element.name = std::string(scanner.wordOnLine());
@@ -99,23 +108,35 @@ Header readHeader(const std::string& path, const std::string& content) {
 class Body {
 public:
     Body(const std::string& path, const std::string& content, const Header& header)
-        : mPath(path), mContent(content), mAt(header.bytes), mEncoding(header.encoding),
+        : mPath(path),
+          mContent(content),
+          mAt(header.bytes),
+          mEncoding(header.encoding),
           mScanner(path, std::string_view(content).substr(header.bytes), '\0') {}
 
     double number(Type type) {
-        if (mEncoding == Encoding::Ascii) return type == Type::Double || type == Type::Float ? asciiReal() : double(mScanner.whole());
+        if (mEncoding == Encoding::Ascii)
+            return type == Type::Double || type == Type::Float ? asciiReal() : double(mScanner.whole());
         unsigned char bytes[8];
         take(bytes, sizeOf(type));
         if (mEncoding == Encoding::Big) std::reverse(bytes, bytes + sizeOf(type));
         switch (type) {
-            case Type::Int8: return double(*reinterpret_cast<const std::int8_t*>(bytes));
-            case Type::UInt8: return double(bytes[0]);
-            case Type::Int16: return as<std::int16_t>(bytes);
-            case Type::UInt16: return as<std::uint16_t>(bytes);
-            case Type::Int32: return as<std::int32_t>(bytes);
-            case Type::UInt32: return as<std::uint32_t>(bytes);
-            case Type::Float: return as<float>(bytes);
-            case Type::Double: return as<double>(bytes);
+            case Type::Int8:
+                return double(*reinterpret_cast<const std::int8_t*>(bytes));
+            case Type::UInt8:
+                return double(bytes[0]);
+            case Type::Int16:
+                return as<std::int16_t>(bytes);
+            case Type::UInt16:
+                return as<std::uint16_t>(bytes);
+            case Type::Int32:
+                return as<std::int32_t>(bytes);
+            case Type::UInt32:
+                return as<std::uint32_t>(bytes);
+            case Type::Float:
+                return as<float>(bytes);
+            case Type::Double:
+                return as<double>(bytes);
         }
         return 0;
     }
@@ -139,7 +160,9 @@ public:
         return std::int64_t(length);
     }
 
-    [[noreturn]] void fail(const std::string& what) const { throw Error(ErrorCode::BadData, mPath + ": " + what); }
+    [[noreturn]] void fail(const std::string& what) const {
+        throw Error(ErrorCode::BadData, mPath + ": " + what);
+    }
 
 private:
     template <typename T>
@@ -170,15 +193,16 @@ private:
 };
 
 void checkCounts(const std::string& path, const std::string& content, const Header& header) {
-    // The least an element can take: one byte a value in binary (a list may be empty), two characters in text.
+    // The least an element can take: one byte a value in binary (a list may be empty), two characters in
+    // text.
     for (const Element& element : header.elements) {
         std::size_t least = 0;
         for (const Property& p : element.properties)
             least += header.encoding == Encoding::Ascii ? 2 : p.list ? sizeOf(p.count) : sizeOf(p.value);
         const std::size_t room = content.size() - header.bytes + 1;
         if (element.count > 0 && (least == 0 || std::uint64_t(element.count) > room / least))
-            throw Error(ErrorCode::BadData, path + ": the header claims " + std::to_string(element.count) + " of \"" + element.name +
-                                                "\", more than the file can hold");
+            throw Error(ErrorCode::BadData, path + ": the header claims " + std::to_string(element.count) +
+                                                " of \"" + element.name + "\", more than the file can hold");
     }
 }
 
@@ -186,7 +210,8 @@ void readVertices(Body& body, const Element& element, Mesh& mesh) {
     int axisOf[3] = {-1, -1, -1};
     for (std::size_t i = 0; i < element.properties.size(); ++i)
         for (int axis = 0; axis < 3; ++axis)
-            if (element.properties[i].name == std::string(1, char('x' + axis)) && !element.properties[i].list) axisOf[axis] = int(i);
+            if (element.properties[i].name == std::string(1, char('x' + axis)) && !element.properties[i].list)
+                axisOf[axis] = int(i);
     for (int axis = 0; axis < 3; ++axis)
         if (axisOf[axis] < 0) body.fail(std::string("the vertices have no ") + char('x' + axis));
     mesh.points.reserve(std::size_t(element.count));
@@ -195,9 +220,13 @@ void readVertices(Body& body, const Element& element, Mesh& mesh) {
         for (std::size_t i = 0; i < element.properties.size(); ++i) {
             int axis = 0;
             while (axis < 3 && axisOf[axis] != int(i)) ++axis;
-            if (axis == 3) { body.skip(element.properties[i]); continue; }
+            if (axis == 3) {
+                body.skip(element.properties[i]);
+                continue;
+            }
             p[axis] = float(body.number(element.properties[i].value));
-            if (!std::isfinite(p[axis])) body.fail("vertex " + std::to_string(v) + " has a coordinate that is not a finite number");
+            if (!std::isfinite(p[axis]))
+                body.fail("vertex " + std::to_string(v) + " has a coordinate that is not a finite number");
         }
         mesh.points.push_back(p);
     }
@@ -216,15 +245,16 @@ void readFaces(Body& body, const Element& element, std::size_t vertices, Mesh& m
             for (std::int64_t c = 0; c < count; ++c) {
                 const double index = body.number(property.value);
                 if (!(index >= 0) || index >= double(vertices))
-                    body.fail("face " + std::to_string(f) + " uses vertex " + std::to_string(std::int64_t(index)) + " of " +
-                              std::to_string(vertices) + " (counting from 0)");
+                    body.fail("face " + std::to_string(f) + " uses vertex " +
+                              std::to_string(std::int64_t(index)) + " of " + std::to_string(vertices) +
+                              " (counting from 0)");
                 corners.push_back(std::uint32_t(index));
             }
             appendPolygon(mesh, corners.data(), corners.size());
         }
 }
 
-} // namespace
+}  // namespace
 
 Mesh readPly(const std::string& path, const std::string& content) {
     const Header header = readHeader(path, content);
@@ -232,8 +262,10 @@ Mesh readPly(const std::string& path, const std::string& content) {
     Body body(path, content, header);
     Mesh mesh;
     for (const Element& element : header.elements) {
-        if (element.name == "vertex") readVertices(body, element, mesh);
-        else if (element.name == "face") readFaces(body, element, mesh.points.size(), mesh);
+        if (element.name == "vertex")
+            readVertices(body, element, mesh);
+        else if (element.name == "face")
+            readFaces(body, element, mesh.points.size(), mesh);
         else
             for (std::int64_t i = 0; i < element.count; ++i)
                 for (const Property& property : element.properties) body.skip(property);
@@ -241,4 +273,4 @@ Mesh readPly(const std::string& path, const std::string& content) {
     return mesh;
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -19,7 +19,8 @@ void writePng(const std::string& path, const Picture& picture) {
     image.flags = PNG_IMAGE_FLAG_FAST;
     errno = 0;
     if (!png_image_write_to_file(&image, path.c_str(), 0, picture.pixels.data(), 0, nullptr))
-        throw Error(ErrorCode::Io, path + ": cannot be written: " + (errno ? std::strerror(errno) : image.message));
+        throw Error(ErrorCode::Io,
+                    path + ": cannot be written: " + (errno ? std::strerror(errno) : image.message));
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

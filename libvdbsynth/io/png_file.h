@@ -15,4 +15,4 @@ struct Picture {
 /// @throw Error Io
 void writePng(const std::string& path, const Picture& picture);
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -48,7 +48,8 @@ Mesh readBinary(const std::string& path, const std::string& content, std::uint32
         std::memcpy(corner, content.data() + 84 + std::size_t(i) * 50 + 12, sizeof corner);
         for (const Vec3f& p : corner)
             if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-                throw Error(ErrorCode::BadData, path + ": triangle " + std::to_string(i) + " has a coordinate that is not a finite number");
+                throw Error(ErrorCode::BadData, path + ": triangle " + std::to_string(i) +
+                                                    " has a coordinate that is not a finite number");
         addTriangle(mesh, welder, corner);
     }
     return mesh;
@@ -72,7 +73,8 @@ Mesh readAscii(const std::string& path, const std::string& content) {
             if (corners != 3) scanner.fail("a facet has fewer than three vertices");
             addTriangle(mesh, welder, corner);
             corners = 0;
-        } else if (word == "solid" || word == "endsolid" || word == "facet" || word == "outer" || word == "endloop") {
+        } else if (word == "solid" || word == "endsolid" || word == "facet" || word == "outer" ||
+                   word == "endloop") {
             ended = word == "endsolid";
             if (word != "endloop") scanner.skipLine();
         } else {
@@ -83,7 +85,7 @@ Mesh readAscii(const std::string& path, const std::string& content) {
     return mesh;
 }
 
-} // namespace
+}  // namespace
 
 Mesh readStl(const std::string& path, const std::string& content) {
     if (content.size() >= 84) {
@@ -91,11 +93,13 @@ Mesh readStl(const std::string& path, const std::string& content) {
         std::memcpy(&count, content.data() + 80, 4);
         if (content.size() == 84 + std::size_t(count) * 50) return readBinary(path, content, count);
         if (content.compare(0, 5, "solid") != 0)
-            throw Error(ErrorCode::BadData, path + ": the header claims " + std::to_string(count) + " triangles (" +
-                        std::to_string(84 + std::uint64_t(count) * 50) + " bytes), the file has " + std::to_string(content.size()) + " bytes");
+            throw Error(ErrorCode::BadData,
+                        path + ": the header claims " + std::to_string(count) + " triangles (" +
+                            std::to_string(84 + std::uint64_t(count) * 50) + " bytes), the file has " +
+                            std::to_string(content.size()) + " bytes");
     }
     if (content.compare(0, 5, "solid") != 0) throw Error(ErrorCode::BadData, path + ": not an STL file");
     return readAscii(path, content);
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

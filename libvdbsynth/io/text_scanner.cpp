@@ -3,8 +3,8 @@
 #include "libvdbsynth/base/error.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -14,9 +14,11 @@
 namespace vdbsynth {
 namespace {
 
-bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+bool isBlank(char c) {
+    return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+}
 
-} // namespace
+}  // namespace
 
 std::string readWholeFile(const std::string& path) {
     struct stat status {};
@@ -27,7 +29,8 @@ std::string readWholeFile(const std::string& path) {
     std::string text;
     if (S_ISREG(status.st_mode)) text.reserve(std::size_t(status.st_size));
     char buffer[1 << 16];
-    while (file.read(buffer, sizeof buffer) || file.gcount() > 0) text.append(buffer, std::size_t(file.gcount()));
+    while (file.read(buffer, sizeof buffer) || file.gcount() > 0)
+        text.append(buffer, std::size_t(file.gcount()));
     if (file.bad()) throw Error(ErrorCode::Io, path + ": reading failed");
     return text;
 }
@@ -91,7 +94,9 @@ std::int64_t TextScanner::whole() {
 }
 
 std::size_t TextScanner::line() const {
-    return std::size_t(std::count(mText.begin(), mText.begin() + std::ptrdiff_t(std::min(mAt, mText.size())), '\n')) + 1;
+    return std::size_t(
+               std::count(mText.begin(), mText.begin() + std::ptrdiff_t(std::min(mAt, mText.size())), '\n')) +
+           1;
 }
 
 void TextScanner::fail(const std::string& what) const {
@@ -124,4 +129,4 @@ void appendReal(std::string& text, float value) {
     text.append(buffer, std::size_t(end - buffer));
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

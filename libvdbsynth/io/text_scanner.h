@@ -48,4 +48,4 @@ bool parseWhole(std::string_view word, std::int64_t& value);
 /// Appends the shortest decimal that reads back to the same float.
 void appendReal(std::string& text, float value);
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -10,7 +10,9 @@ struct Index3 {
 
     int& operator[](int axis) { return axis == 0 ? x : axis == 1 ? y : z; }
     const int& operator[](int axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
-    friend bool operator==(const Index3& a, const Index3& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+    friend bool operator==(const Index3& a, const Index3& b) {
+        return a.x == b.x && a.y == b.y && a.z == b.z;
+    }
     friend bool operator!=(const Index3& a, const Index3& b) { return !(a == b); }
     friend bool operator<(const Index3& a, const Index3& b) {
         return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
@@ -27,9 +29,7 @@ struct IndexBox {
 
     Index3 size() const { return {max.x - min.x + 1, max.y - min.y + 1, max.z - min.z + 1}; }
     bool empty() const { return max.x < min.x || max.y < min.y || max.z < min.z; }
-    std::int64_t volume() const {
-        return empty() ? 0 : std::int64_t(size().x) * size().y * size().z;
-    }
+    std::int64_t volume() const { return empty() ? 0 : std::int64_t(size().x) * size().y * size().z; }
     bool contains(const Index3& p) const {
         return p.x >= min.x && p.x <= max.x && p.y >= min.y && p.y <= max.y && p.z >= min.z && p.z <= max.z;
     }
@@ -49,4 +49,4 @@ struct IndexBox {
     }
 };
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

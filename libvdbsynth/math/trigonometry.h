@@ -10,4 +10,4 @@ inline constexpr double kPi = 3.14159265358979323846;
 double sine(double angle) noexcept;
 double cosine(double angle) noexcept;
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -20,10 +20,13 @@ LevelSet cropModel(const LevelSet& model, const IndexBox& box, const RunContext&
     const BrickField closed = closeField(field, field.box(), kAllCut, band, ctx);
     FloatGridPtr grid = scatterBricks(closed, box.min, float(voxel), band, ctx);
     grid->setTransform(model.grid->transform().copy());
-    if (grid->activeVoxelCount() == 0) throw Error(ErrorCode::EmptyInput, "--box " + boxText(box) + ": no surface in it; the model's domain is " + boxText(model.domain));
+    if (grid->activeVoxelCount() == 0)
+        throw Error(
+            ErrorCode::EmptyInput,
+            "--box " + boxText(box) + ": no surface in it; the model's domain is " + boxText(model.domain));
     LevelSet result{grid, box, true};
     stampLevelSet(result);
     return result;
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -9,4 +9,4 @@ namespace vdbsynth {
 /// @par Repeats same bits for any number of threads
 LevelSet cropModel(const LevelSet& model, const IndexBox& box, const RunContext& ctx = {});
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

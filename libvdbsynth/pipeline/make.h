@@ -15,4 +15,4 @@ struct MakeOptions {
 /// @par Repeats same bits for (options, ctx.seed), any number of threads
 LevelSet makeModel(const MakeOptions& options, const RunContext& ctx = {});
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -11,21 +11,30 @@
 namespace vdbsynth {
 namespace {
 
-CutFaces facesOf(const LevelSet& model) { return model.domainRecorded ? kAllCut : CutFaces{}; }
+CutFaces facesOf(const LevelSet& model) {
+    return model.domainRecorded ? kAllCut : CutFaces{};
+}
 
-} // namespace
+}  // namespace
 
-MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const MatchOptions& options, const RunContext& ctx) {
-    requireOption(options.block >= 4 && options.block <= 256, "block", std::to_string(options.block), "a whole number from 4 to 256");
-    requireOption(options.count >= 1 && options.count <= 100000, "count", std::to_string(options.count), "a whole number from 1 to 100000");
+MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const MatchOptions& options,
+                       const RunContext& ctx) {
+    requireOption(options.block >= 4 && options.block <= 256, "block", std::to_string(options.block),
+                  "a whole number from 4 to 256");
+    requireOption(options.count >= 1 && options.count <= 100000, "count", std::to_string(options.count),
+                  "a whole number from 1 to 100000");
     const ThreadLimit limit(ctx);
     const float band = std::max(8.f, float(options.block) / 2);
-    const auto field = std::make_shared<const BrickField>(widenBand(*exemplar.grid, exemplar.domain, facesOf(exemplar), band, ctx));
-    // The query's block is read from its whole domain, so that a block matched in its own model costs exactly 0.
+    const auto field = std::make_shared<const BrickField>(
+        widenBand(*exemplar.grid, exemplar.domain, facesOf(exemplar), band, ctx));
+    // The query's block is read from its whole domain, so that a block matched in its own model costs exactly
+    // 0.
     const IndexBox box = IndexBox::cube(options.at, options.block);
     if (query.domain.intersection(box).empty())
-        throw Error(ErrorCode::InvalidOption, "--at " + std::to_string(options.at.x) + "," + std::to_string(options.at.y) + "," + std::to_string(options.at.z) +
-                        ": the block lies outside the query's domain " + boxText(query.domain));
+        throw Error(ErrorCode::InvalidOption,
+                    "--at " + std::to_string(options.at.x) + "," + std::to_string(options.at.y) + "," +
+                        std::to_string(options.at.z) + ": the block lies outside the query's domain " +
+                        boxText(query.domain));
     IndexBox reach = query.domain;
     for (int axis = 0; axis < 3; ++axis) {
         reach.min[axis] = std::min(reach.min[axis], box.min[axis]);
@@ -33,7 +42,8 @@ MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const Ma
     }
     const BrickField queryField = widenBand(*query.grid, reach, facesOf(query), band, ctx);
     const Index3 side{options.block, options.block, options.block};
-    const std::size_t count = std::size_t(options.block) * std::size_t(options.block) * std::size_t(options.block);
+    const std::size_t count =
+        std::size_t(options.block) * std::size_t(options.block) * std::size_t(options.block);
     std::vector<float> samples(count);
     queryField.readBox(box.min - reach.min, side, samples.data());
     BlockQuery blockQuery;
@@ -46,8 +56,11 @@ MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const Ma
         blockQuery.known = known.data();
     }
     MatchResult result;
-    result.known = options.mask ? std::size_t(std::count(known.begin(), known.end(), std::uint8_t(1))) : count;
-    if (result.known == 0) throw Error(ErrorCode::Unusable, "--mask: not active anywhere in the query's block, so there is nothing to compare");
+    result.known =
+        options.mask ? std::size_t(std::count(known.begin(), known.end(), std::uint8_t(1))) : count;
+    if (result.known == 0)
+        throw Error(ErrorCode::Unusable,
+                    "--mask: not active anywhere in the query's block, so there is nothing to compare");
     BlockIndexOptions indexOptions;
     indexOptions.block = options.block;
     const BlockIndex index = BlockIndex::build(field, indexOptions, ctx);
@@ -56,4 +69,4 @@ MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const Ma
     return result;
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

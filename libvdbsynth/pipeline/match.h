@@ -8,22 +8,23 @@
 namespace vdbsynth {
 
 struct MatchOptions {
-    int block = 16;      ///< N [voxels], 4..256
-    Index3 at;           ///< minimum corner of the block to look for, in the query's index space
-    int count = 1;       ///< K, 1..100000
-    GridPtr mask;        ///< only samples where it is active count, in the query's index space; null: all
+    int block = 16;  ///< N [voxels], 4..256
+    Index3 at;       ///< minimum corner of the block to look for, in the query's index space
+    int count = 1;   ///< K, 1..100000
+    GridPtr mask;    ///< only samples where it is active count, in the query's index space; null: all
 };
 
 struct MatchResult {
     std::vector<BlockMatch> matches;  ///< positions in the exemplar's index space, best first
     BlockSearchCounts counts;
-    std::size_t known = 0;            ///< samples of the query that counted
+    std::size_t known = 0;  ///< samples of the query that counted
 };
 
 /// The blocks of an exemplar's domain most like one of the query's, exact; distances are compared in voxels,
 /// clamped to max(8, N/2).
 /// @throw Error InvalidOption, Unusable (block larger than the domain, no known sample), Memory, Cancelled
 /// @par Repeats same bits for any number of threads
-MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const MatchOptions& options, const RunContext& ctx = {});
+MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const MatchOptions& options,
+                       const RunContext& ctx = {});
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -21,8 +21,10 @@ double longestSide(const std::string& path, const Mesh& mesh) {
             high[axis] = std::max(high[axis], double(mesh.points[i][axis]));
         }
     };
-    for (const Triangle& t : mesh.triangles) for (std::uint32_t i : t) add(i);
-    for (const Quad& q : mesh.quads) for (std::uint32_t i : q) add(i);
+    for (const Triangle& t : mesh.triangles)
+        for (std::uint32_t i : t) add(i);
+    for (const Quad& q : mesh.quads)
+        for (std::uint32_t i : q) add(i);
     const double side = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
     if (!(side > 0)) throw Error(ErrorCode::Unusable, path + ": all faces lie in one point");
     return side;
@@ -35,8 +37,8 @@ LevelSet loadMesh(const std::string& path, const ModelOptions& options, const Ru
         const int resolution = options.resolution > 0 ? options.resolution : kDefaultResolution;
         voxelSize = longestSide(path, mesh) / resolution;
         char text[128];
-        std::snprintf(text, sizeof text, ": voxel size %.6g (%d voxels along the longest side%s)", voxelSize, resolution,
-                      options.resolution > 0 ? "" : "; --resolution or --voxel-size sets it");
+        std::snprintf(text, sizeof text, ": voxel size %.6g (%d voxels along the longest side%s)", voxelSize,
+                      resolution, options.resolution > 0 ? "" : "; --resolution or --voxel-size sets it");
         message(ctx, options.resolution > 0 ? MessageLevel::Detail : MessageLevel::Note, path + text);
     }
     LevelSet model;
@@ -46,25 +48,31 @@ LevelSet loadMesh(const std::string& path, const ModelOptions& options, const Ru
     return model;
 }
 
-} // namespace
+}  // namespace
 
 bool isMeshPath(const std::string& path) {
     MeshFormat format{};
     return meshFormatOf(path, format);
 }
 
-bool isModelPath(const std::string& path) { return extensionOf(path) == "vdb" || isMeshPath(path); }
+bool isModelPath(const std::string& path) {
+    return extensionOf(path) == "vdb" || isMeshPath(path);
+}
 
 void requireModelPath(const std::string& path) {
     if (isModelPath(path)) return;
-    throw Error(ErrorCode::InvalidOption, path + ": unknown extension; models are .vdb, .obj, .ply, .stl or .off");
+    throw Error(ErrorCode::InvalidOption,
+                path + ": unknown extension; models are .vdb, .obj, .ply, .stl or .off");
 }
 
 LevelSet loadModel(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
     requireModelPath(path);
-    requireOption(options.voxelSize >= 0 && options.voxelSize < 1e30, "voxel-size", std::to_string(options.voxelSize), "above 0 (world)");
-    requireOption(options.resolution == 0 || (options.resolution >= 2 && options.resolution <= 100000), "resolution", std::to_string(options.resolution), "a whole number from 2 to 100000");
-    requireOption(options.halfWidth >= 1.5 && options.halfWidth <= 100, "half-width", std::to_string(options.halfWidth), "from 1.5 to 100 voxels");
+    requireOption(options.voxelSize >= 0 && options.voxelSize < 1e30, "voxel-size",
+                  std::to_string(options.voxelSize), "above 0 (world)");
+    requireOption(options.resolution == 0 || (options.resolution >= 2 && options.resolution <= 100000),
+                  "resolution", std::to_string(options.resolution), "a whole number from 2 to 100000");
+    requireOption(options.halfWidth >= 1.5 && options.halfWidth <= 100, "half-width",
+                  std::to_string(options.halfWidth), "from 1.5 to 100 voxels");
     const ThreadLimit limit(ctx);
     if (isMeshPath(path)) return loadMesh(path, options, ctx);
     VdbReadOptions read;
@@ -73,4 +81,4 @@ LevelSet loadModel(const std::string& path, const ModelOptions& options, const R
     return readVdbModel(path, read, ctx);
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

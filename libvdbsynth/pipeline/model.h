@@ -8,10 +8,11 @@
 namespace vdbsynth {
 
 struct ModelOptions {
-    double voxelSize = 0;       ///< [world], above 0; 0: by resolution. Meshes only.
-    int resolution = 0;         ///< voxels along the mesh's longest side, 2..100000; 0: kDefaultResolution, with a note. Meshes only.
-    double halfWidth = 3;       ///< [voxels] of the level set made from a mesh, 1.5..100
-    std::string grid;           ///< which grid of a VDB file; empty: see VdbReadOptions
+    double voxelSize = 0;  ///< [world], above 0; 0: by resolution. Meshes only.
+    int resolution = 0;    ///< voxels along the mesh's longest side, 2..100000; 0: kDefaultResolution, with a
+                           ///< note. Meshes only.
+    double halfWidth = 3;  ///< [voxels] of the level set made from a mesh, 1.5..100
+    std::string grid;      ///< which grid of a VDB file; empty: see VdbReadOptions
     std::optional<double> iso;  ///< makes a fog volume a solid
 };
 
@@ -25,8 +26,9 @@ bool isMeshPath(const std::string& path);
 void requireModelPath(const std::string& path);
 
 /// Any supported geometry as a level set: the one door of every command that wants a model.
-/// @throw Error  as readVdbModel (vdb/vdb_file.h), readMesh (io/mesh_file.h) and meshToLevelSet (vdb/mesh_conversion.h)
+/// @throw Error  as readVdbModel (vdb/vdb_file.h), readMesh (io/mesh_file.h) and meshToLevelSet
+/// (vdb/mesh_conversion.h)
 /// @par Repeats  same bits for any number of threads
 LevelSet loadModel(const std::string& path, const ModelOptions& options = {}, const RunContext& ctx = {});
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -12,8 +12,8 @@
 namespace vdbsynth {
 namespace {
 
-void writeOne(const LevelSet& model, const std::string& path, const std::string& temporary, const ModelOutputOptions& options,
-              std::optional<Mesh>& mesh, const RunContext& ctx) {
+void writeOne(const LevelSet& model, const std::string& path, const std::string& temporary,
+              const ModelOutputOptions& options, std::optional<Mesh>& mesh, const RunContext& ctx) {
     if (extensionOf(path) == "vdb") {
         std::vector<GridPtr> grids{model.grid};
         grids.insert(grids.end(), options.extraGrids.begin(), options.extraGrids.end());
@@ -36,18 +36,19 @@ void writeOne(const LevelSet& model, const std::string& path, const std::string&
     writeMesh(temporary, format, *mesh);
 }
 
-} // namespace
+}  // namespace
 
 void requireOutputPaths(const std::vector<std::string>& paths) {
     for (const std::string& path : paths) {
         MeshFormat format{};
         if (extensionOf(path) != "vdb" && !meshFormatOf(path, format))
-            throw Error(ErrorCode::InvalidOption, path + ": unknown extension; outputs are .vdb, .obj, .ply, .stl or .off");
+            throw Error(ErrorCode::InvalidOption,
+                        path + ": unknown extension; outputs are .vdb, .obj, .ply, .stl or .off");
     }
 }
 
-void writeModel(const LevelSet& model, const std::vector<std::string>& paths, const ModelOutputOptions& options,
-                OutputSet& outputs, const RunContext& ctx) {
+void writeModel(const LevelSet& model, const std::vector<std::string>& paths,
+                const ModelOutputOptions& options, OutputSet& outputs, const RunContext& ctx) {
     requireOutputPaths(paths);
     std::vector<std::string> temporaries;
     for (const std::string& path : paths) temporaries.push_back(outputs.add(path));
@@ -67,4 +68,4 @@ void writeModel(const LevelSet& model, const std::vector<std::string>& paths, co
     }
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -10,11 +10,11 @@
 namespace vdbsynth {
 
 struct ModelOutputOptions {
-    bool points = false;       ///< .ply holds points with normals instead of a mesh
-    double adaptivity = 0;     ///< 0..1, for meshes
-    double spacing = 1;        ///< [voxels] between points, 0.25..100
+    bool points = false;              ///< .ply holds points with normals instead of a mesh
+    double adaptivity = 0;            ///< 0..1, for meshes
+    double spacing = 1;               ///< [voxels] between points, 0.25..100
     std::vector<GridPtr> extraGrids;  ///< written beside `surface` into .vdb outputs
-    VdbMetadata metadata;      ///< of .vdb outputs
+    VdbMetadata metadata;             ///< of .vdb outputs
 };
 
 /// @throw Error InvalidOption if a path's extension is none that writeModel writes
@@ -24,7 +24,7 @@ void requireOutputPaths(const std::vector<std::string>& paths);
 /// Nothing is renamed into place; `outputs.commit()` does that.
 /// @throw Error InvalidOption, Io, EmptyInput (no surface to mesh)
 /// @par Repeats byte for byte for equal models and metadata
-void writeModel(const LevelSet& model, const std::vector<std::string>& paths, const ModelOutputOptions& options,
-                OutputSet& outputs, const RunContext& ctx = {});
+void writeModel(const LevelSet& model, const std::vector<std::string>& paths,
+                const ModelOutputOptions& options, OutputSet& outputs, const RunContext& ctx = {});
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

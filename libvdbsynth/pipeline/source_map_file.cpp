@@ -13,9 +13,13 @@
 namespace vdbsynth {
 namespace {
 
-std::string key(const char* name) { return std::string("vdbsynth:map:") + name; }
+std::string key(const char* name) {
+    return std::string("vdbsynth:map:") + name;
+}
 
-void putText(openvdb::GridBase& grid, const char* name, const std::string& value) { grid.insertMeta(key(name), openvdb::StringMetadata(value)); }
+void putText(openvdb::GridBase& grid, const char* name, const std::string& value) {
+    grid.insertMeta(key(name), openvdb::StringMetadata(value));
+}
 
 std::string getText(const std::string& path, const openvdb::GridBase& grid, const char* name) {
     const auto meta = grid.getMetadata<openvdb::StringMetadata>(key(name));
@@ -27,7 +31,9 @@ int getWhole(const std::string& path, const openvdb::GridBase& grid, const char*
     const std::string text = getText(path, grid, name);
     char* end = nullptr;
     const long value = std::strtol(text.c_str(), &end, 10);
-    if (*end || text.empty() || value < low || value > high) throw Error(ErrorCode::BadData, path + ": its source map has a bad " + key(name) + " \"" + text + "\"");
+    if (*end || text.empty() || value < low || value > high)
+        throw Error(ErrorCode::BadData,
+                    path + ": its source map has a bad " + key(name) + " \"" + text + "\"");
     return int(value);
 }
 
@@ -35,14 +41,18 @@ double getReal(const std::string& path, const openvdb::GridBase& grid, const cha
     const std::string text = getText(path, grid, name);
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
-    if (*end || text.empty() || !(value > 0) || value > 1e30) throw Error(ErrorCode::BadData, path + ": its source map has a bad " + key(name) + " \"" + text + "\"");
+    if (*end || text.empty() || !(value > 0) || value > 1e30)
+        throw Error(ErrorCode::BadData,
+                    path + ": its source map has a bad " + key(name) + " \"" + text + "\"");
     return value;
 }
 
 IndexBox getBox(const std::string& path, const openvdb::GridBase& grid, const char* name) {
     IndexBox box;
     const std::string text = getText(path, grid, name);
-    if (!parseBox(text, box)) throw Error(ErrorCode::BadData, path + ": its source map has a bad " + key(name) + " \"" + text + "\"");
+    if (!parseBox(text, box))
+        throw Error(ErrorCode::BadData,
+                    path + ": its source map has a bad " + key(name) + " \"" + text + "\"");
     return box;
 }
 
@@ -52,9 +62,10 @@ std::string exactText(double value) {
     return text;
 }
 
-} // namespace
+}  // namespace
 
-std::vector<GridPtr> sourceMapGrids(const SourceMap& map, const openvdb::FloatGrid& result, const RunContext& ctx) {
+std::vector<GridPtr> sourceMapGrids(const SourceMap& map, const openvdb::FloatGrid& result,
+                                    const RunContext& ctx) {
     Stage stage(ctx, "source map", 1);
     auto votes = openvdb::Vec3IGrid::create(openvdb::Vec3i(0));
     votes->setName("vote_source");
@@ -68,7 +79,8 @@ std::vector<GridPtr> sourceMapGrids(const SourceMap& map, const openvdb::FloatGr
         for (int b = 0; b < lattice.y; ++b)
             for (int c = 0; c < lattice.z; ++c) {
                 const Index3 source = map.patches.source[map.patches.index({a, b, c})] + shift;
-                voteAccessor.setValueOn(openvdb::Coord(a, b, c), openvdb::Vec3i(source.x, source.y, source.z));
+                voteAccessor.setValueOn(openvdb::Coord(a, b, c),
+                                        openvdb::Vec3i(source.x, source.y, source.z));
                 weightAccessor.setValueOn(openvdb::Coord(a, b, c), 1.f);
             }
     putText(*votes, "format", "1");
@@ -101,7 +113,8 @@ std::vector<GridPtr> sourceMapGrids(const SourceMap& map, const openvdb::FloatGr
         const Index3 local = voxel - map.targetBox.min;
         const Index3 l = strongestBlock(map.patches, local);
         const std::size_t at = map.patches.index(l);
-        const Index3 origin{map.patches.origin(0, l.x), map.patches.origin(1, l.y), map.patches.origin(2, l.z)};
+        const Index3 origin{map.patches.origin(0, l.x), map.patches.origin(1, l.y),
+                            map.patches.origin(2, l.z)};
         const Index3 from = map.patches.source[at] + local - origin + shift;
         sourceAccessor.setValueOn(it.getCoord(), openvdb::Vec3i(from.x, from.y, from.z));
         exemplarAccessor.setValueOn(it.getCoord(), map.patches.exemplar[at]);
@@ -116,7 +129,8 @@ SourceMap readSourceMap(const std::string& path, const RunContext& ctx) {
     if (!votes) throw Error(ErrorCode::BadData, path + ": grid \"vote_source\" is not a source map");
     SourceMap map;
     if (getText(path, *votes, "kernel") != kVoteKernel || getText(path, *votes, "format") != "1")
-        throw Error(ErrorCode::BadData, path + ": its source map was written by another version of vdb_synth; make it again");
+        throw Error(ErrorCode::BadData,
+                    path + ": its source map was written by another version of vdb_synth; make it again");
     map.patches.block = getWhole(path, *votes, "patch", 1, 65536);
     map.patches.stride = getWhole(path, *votes, "stride", 1, map.patches.block);
     map.patches.overhang = getWhole(path, *votes, "overhang", 0, 65536);
@@ -132,18 +146,23 @@ SourceMap readSourceMap(const std::string& path, const RunContext& ctx) {
     map.exemplarHash = getText(path, *votes, "exemplar_hash");
     map.patches.target = map.targetBox.size();
     const Index3 lattice = map.patches.lattice();
-    const std::uint64_t blocks = std::uint64_t(lattice.x) * std::uint64_t(lattice.y) * std::uint64_t(lattice.z);
-    if (votes->activeVoxelCount() != blocks) throw Error(ErrorCode::BadData, path + ": its source map has " + std::to_string(votes->activeVoxelCount()) + " blocks where " + std::to_string(blocks) + " belong");
+    const std::uint64_t blocks =
+        std::uint64_t(lattice.x) * std::uint64_t(lattice.y) * std::uint64_t(lattice.z);
+    if (votes->activeVoxelCount() != blocks)
+        throw Error(ErrorCode::BadData, path + ": its source map has " +
+                                            std::to_string(votes->activeVoxelCount()) + " blocks where " +
+                                            std::to_string(blocks) + " belong");
     map.patches.allocate();
     const IndexBox room = {map.exemplarBox.min, map.exemplarBox.max};
     for (auto it = votes->cbeginValueOn(); it; ++it) {
         const Index3 l = fromCoord(it.getCoord());
         const Index3 source{(*it).x(), (*it).y(), (*it).z()};
-        if (!it.isVoxelValue() || l.x < 0 || l.y < 0 || l.z < 0 || l.x >= lattice.x || l.y >= lattice.y || l.z >= lattice.z || !room.contains(source))
+        if (!it.isVoxelValue() || l.x < 0 || l.y < 0 || l.z < 0 || l.x >= lattice.x || l.y >= lattice.y ||
+            l.z >= lattice.z || !room.contains(source))
             throw Error(ErrorCode::BadData, path + ": its source map points outside the exemplar");
         map.patches.source[map.patches.index(l)] = source - map.exemplarBox.min;
     }
     return map;
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

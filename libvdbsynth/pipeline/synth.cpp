@@ -27,11 +27,14 @@ Index3 targetSize(const Index3& domain, const SynthOptions& options) {
     for (int axis = 0; axis < 3; ++axis) {
         const double given = options.size[std::size_t(axis)];
         const double voxels = options.multiple[std::size_t(axis)] ? given * domain[axis] : given;
-        requireOption(std::isfinite(voxels) && voxels >= 1 && voxels <= 1 << 20, "size", std::to_string(given), "at least the exemplar's domain and at most 1048576 voxels");
+        requireOption(std::isfinite(voxels) && voxels >= 1 && voxels <= 1 << 20, "size",
+                      std::to_string(given), "at least the exemplar's domain and at most 1048576 voxels");
         size[axis] = int(std::lround(voxels));
         if (size[axis] < domain[axis])
-            throw Error(ErrorCode::InvalidOption, "--size: " + std::to_string(size[axis]) + " voxels along " + char('x' + axis) + " is smaller than the exemplar's domain (" +
-                            std::to_string(domain[axis]) + "); give at least that, or 1x");
+            throw Error(ErrorCode::InvalidOption,
+                        "--size: " + std::to_string(size[axis]) + " voxels along " + char('x' + axis) +
+                            " is smaller than the exemplar's domain (" + std::to_string(domain[axis]) +
+                            "); give at least that, or 1x");
     }
     return size;
 }
@@ -45,7 +48,8 @@ Plan makePlan(const LevelSet& exemplar, const SynthOptions& options) {
     plan.map.exemplarBox = domain;
     plan.map.targetBox = plan.map.targetDomain;
     for (int axis = 0; axis < 3; ++axis) {
-        const Border border = options.border[std::size_t(axis)].value_or(recorded ? Border::Cut : Border::Object);
+        const Border border =
+            options.border[std::size_t(axis)].value_or(recorded ? Border::Cut : Border::Object);
         plan.block.border[std::size_t(axis)] = border;
         plan.map.cut[std::size_t(2 * axis)] = plan.map.cut[std::size_t(2 * axis + 1)] = border == Border::Cut;
         if (border == Border::Cut) continue;
@@ -63,15 +67,21 @@ Plan makePlan(const LevelSet& exemplar, const SynthOptions& options) {
 }
 
 void requireRoom(const RunContext& ctx, const SourceMap& map, const FloatGridPtr& grid) {
-    // The target's surface grows with its volume; a stored brick is 2 KiB of field, as much again of result, and
-    // its share of band, mesh and map. Bricks that hold surface: those of the exemplar, scaled.
-    const double growth = double(map.targetBox.volume()) / double(std::max<std::int64_t>(map.exemplarBox.volume(), 1));
-    const double bytes = growth * double(grid->activeVoxelCount()) * 60 + double(map.targetBox.volume()) * (8.0 / 512 + 0.5);
-    requireMemory(ctx, bytes, "a result of " + std::to_string(map.targetBox.size().x) + " x " + std::to_string(map.targetBox.size().y) + " x " +
-                      std::to_string(map.targetBox.size().z) + " voxels", "use a smaller --size or larger voxels");
+    // The target's surface grows with its volume; a stored brick is 2 KiB of field, as much again of result,
+    // and its share of band, mesh and map. Bricks that hold surface: those of the exemplar, scaled.
+    const double growth =
+        double(map.targetBox.volume()) / double(std::max<std::int64_t>(map.exemplarBox.volume(), 1));
+    const double bytes =
+        growth * double(grid->activeVoxelCount()) * 60 + double(map.targetBox.volume()) * (8.0 / 512 + 0.5);
+    requireMemory(ctx, bytes,
+                  "a result of " + std::to_string(map.targetBox.size().x) + " x " +
+                      std::to_string(map.targetBox.size().y) + " x " +
+                      std::to_string(map.targetBox.size().z) + " voxels",
+                  "use a smaller --size or larger voxels");
 }
 
-LevelSet finish(const SourceMap& map, const BrickField& field, const openvdb::FloatGrid& like, const RunContext& ctx) {
+LevelSet finish(const SourceMap& map, const BrickField& field, const openvdb::FloatGrid& like,
+                const RunContext& ctx) {
     LevelSet model;
     model.grid = closeAndRebuild(field, map.targetBox.min, map.cut, map.halfWidth, like, "the result", ctx);
     model.domain = map.targetDomain;
@@ -80,26 +90,33 @@ LevelSet finish(const SourceMap& map, const BrickField& field, const openvdb::Fl
     return model;
 }
 
-std::shared_ptr<const BrickField> gatherExemplar(const SourceMap& map, const LevelSet& exemplar, const RunContext& ctx) {
-    return std::make_shared<const BrickField>(widenBand(*exemplar.grid, map.exemplarBox, map.cut, map.band, ctx));
+std::shared_ptr<const BrickField> gatherExemplar(const SourceMap& map, const LevelSet& exemplar,
+                                                 const RunContext& ctx) {
+    return std::make_shared<const BrickField>(
+        widenBand(*exemplar.grid, map.exemplarBox, map.cut, map.band, ctx));
 }
 
-} // namespace
+}  // namespace
 
 SynthResult synthesize(const LevelSet& exemplar, const SynthOptions& options, const RunContext& ctx) {
     const ThreadLimit limit(ctx);
     Plan plan = makePlan(exemplar, options);
     requireRoom(ctx, plan.map, exemplar.grid);
-    const int block = options.block > 0 ? options.block : deriveBlock(plan.map.exemplarBox.size(), plan.block);
+    const int block =
+        options.block > 0 ? options.block : deriveBlock(plan.map.exemplarBox.size(), plan.block);
     plan.block.block = block;
     plan.map.band = std::max(8.f, float(block) / 2);
     plan.map.halfWidth = options.halfWidth;
     plan.map.voxelSize = voxelSizeOf(*exemplar.grid);
     plan.map.exemplarHash = levelSetHash(*exemplar.grid);
-    message(ctx, MessageLevel::Detail, "domain " + boxText(plan.map.exemplarBox) + ", target " + boxText(plan.map.targetDomain) + ", block " + std::to_string(block));
+    message(ctx, MessageLevel::Detail,
+            "domain " + boxText(plan.map.exemplarBox) + ", target " + boxText(plan.map.targetDomain) +
+                ", block " + std::to_string(block));
     {
         Stage stage(ctx, "widening the band to " + std::to_string(int(plan.map.band)) + " voxels", 1);
-        message(ctx, MessageLevel::Detail, "the exemplar's band is re-distanced to " + std::to_string(int(plan.map.band)) + " voxels a side");
+        message(ctx, MessageLevel::Detail,
+                "the exemplar's band is re-distanced to " + std::to_string(int(plan.map.band)) +
+                    " voxels a side");
     }
     const auto field = gatherExemplar(plan.map, exemplar, ctx);
     BrickField mask;
@@ -121,15 +138,20 @@ LevelSet repeatSynthesis(const SourceMap& map, const LevelSet& exemplar, const R
     const double ratio = map.voxelSize / voxelSizeOf(*exemplar.grid);
     const int factor = int(std::lround(ratio));
     if (factor < 1 || factor > 64 || std::abs(ratio - factor) > 1e-4 * ratio)
-        throw Error(ErrorCode::ShapeMismatch, "the exemplar's voxel size " + std::to_string(voxelSizeOf(*exemplar.grid)) + " is not the map's " + std::to_string(map.voxelSize) +
-                        " divided by a whole number; convert it with --voxel-size " + std::to_string(map.voxelSize));
+        throw Error(ErrorCode::ShapeMismatch,
+                    "the exemplar's voxel size " + std::to_string(voxelSizeOf(*exemplar.grid)) +
+                        " is not the map's " + std::to_string(map.voxelSize) +
+                        " divided by a whole number; convert it with --voxel-size " +
+                        std::to_string(map.voxelSize));
     SourceMap scaled = map;
     if (factor > 1) {
-        // Voxel i of the map covers fine voxels k*i + shift .. k*i + shift + k-1: the fine voxels whose centres lie in it.
+        // Voxel i of the map covers fine voxels k*i + shift .. k*i + shift + k-1: the fine voxels whose
+        // centres lie in it.
         const int shift = -((factor - 1) / 2);
         const auto finer = [&](const IndexBox& box) {
             const Index3 by{shift, shift, shift};
-            return IndexBox{box.min * factor + by, (box.max + Index3{1, 1, 1}) * factor + by - Index3{1, 1, 1}};
+            return IndexBox{box.min * factor + by,
+                            (box.max + Index3{1, 1, 1}) * factor + by - Index3{1, 1, 1}};
         };
         scaled.exemplarBox = finer(map.exemplarBox);
         scaled.targetBox = finer(map.targetBox);
@@ -141,8 +163,10 @@ LevelSet repeatSynthesis(const SourceMap& map, const LevelSet& exemplar, const R
     const auto field = gatherExemplar(scaled, exemplar, ctx);
     float value = 0;
     if (field->constantIn(field->box(), value))
-        throw Error(ErrorCode::ShapeMismatch, "the exemplar has no surface in the map's box " + boxText(scaled.exemplarBox) + "; it is not the map's exemplar or lies elsewhere");
+        throw Error(ErrorCode::ShapeMismatch, "the exemplar has no surface in the map's box " +
+                                                  boxText(scaled.exemplarBox) +
+                                                  "; it is not the map's exemplar or lies elsewhere");
     return finish(scaled, voteThroughMap(scaled.patches, {field}, ctx), *exemplar.grid, ctx);
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -20,11 +20,12 @@ const ExemplarKind& findKind(const std::string& name) {
 
 Index3 defaultSize(const ExemplarKind& kind, const ExemplarOptions& options, double feature) {
     Index3 size{options.resolution, options.resolution, options.resolution};
-    if (kind.heightInFeatures > 0) size.z = std::clamp(int(std::lround(kind.heightInFeatures * feature)), 8, options.resolution);
+    if (kind.heightInFeatures > 0)
+        size.z = std::clamp(int(std::lround(kind.heightInFeatures * feature)), 8, options.resolution);
     return size;
 }
 
-} // namespace
+}  // namespace
 
 const std::vector<ExemplarKind>& exemplarKinds() {
     static const std::vector<ExemplarKind> kinds{
@@ -44,13 +45,16 @@ ExemplarField makeExemplar(const ExemplarOptions& options, const RunContext& ctx
     const ExemplarKind& kind = findKind(options.kind);
     const double feature = options.feature > 0 ? options.feature : kind.feature;
     requireOption(feature >= 4 && feature <= 256, "feature", std::to_string(feature), "from 4 to 256 voxels");
-    requireOption(options.resolution >= 16 && options.resolution <= 4096, "resolution", std::to_string(options.resolution), "from 16 to 4096");
+    requireOption(options.resolution >= 16 && options.resolution <= 4096, "resolution",
+                  std::to_string(options.resolution), "from 16 to 4096");
     Index3 size = options.size;
     if (size == Index3{0, 0, 0}) size = defaultSize(kind, options, feature);
     for (int axis = 0; axis < 3; ++axis)
         requireOption(size[axis] >= 8 && size[axis] <= 4096, "size",
-                      std::to_string(size.x) + "," + std::to_string(size.y) + "," + std::to_string(size.z), "three whole numbers from 8 to 4096");
-    requireMemory(ctx, double(size.x) * size.y * size.z * 12, "make " + kind.name, "use a smaller --resolution or --size");
+                      std::to_string(size.x) + "," + std::to_string(size.y) + "," + std::to_string(size.z),
+                      "three whole numbers from 8 to 4096");
+    requireMemory(ctx, double(size.x) * size.y * size.z * 12, "make " + kind.name,
+                  "use a smaller --resolution or --size");
     ExemplarRequest request;
     request.domain = IndexBox::fromSize(size);
     request.box = request.domain.expanded(kExemplarMargin);
@@ -62,17 +66,25 @@ ExemplarField makeExemplar(const ExemplarOptions& options, const RunContext& ctx
     const auto fromPrimitives = [&](const std::vector<Primitive>& primitives) {
         result.field = unionField(primitives, request.box, kExemplarLimit, ctx);
     };
-    if (kind.name == "balls") fromPrimitives(ballsPrimitives(request, ctx));
-    else if (kind.name == "grid") fromPrimitives(gridPrimitives(request));
-    else if (kind.name == "chainmail") fromPrimitives(chainmailPrimitives(request));
-    else if (kind.name == "fibres") fromPrimitives(fibresPrimitives(request));
-    else if (kind.name == "weave") fromPrimitives(weavePrimitives(request));
-    else if (kind.name == "foam") result.field = foamField(request, ctx);
-    else if (kind.name == "sponge") result.field = spongeField(request, ctx);
-    else result.field = terrainField(request, ctx);
+    if (kind.name == "balls")
+        fromPrimitives(ballsPrimitives(request, ctx));
+    else if (kind.name == "grid")
+        fromPrimitives(gridPrimitives(request));
+    else if (kind.name == "chainmail")
+        fromPrimitives(chainmailPrimitives(request));
+    else if (kind.name == "fibres")
+        fromPrimitives(fibresPrimitives(request));
+    else if (kind.name == "weave")
+        fromPrimitives(weavePrimitives(request));
+    else if (kind.name == "foam")
+        result.field = foamField(request, ctx);
+    else if (kind.name == "sponge")
+        result.field = spongeField(request, ctx);
+    else
+        result.field = terrainField(request, ctx);
     result.exact = kind.name != "sponge" && kind.name != "terrain";
     stage.advance();
     return result;
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -36,7 +36,7 @@ double sumOf(const std::vector<Wave>& waves, const Vec3d& p) {
     return sum;
 }
 
-} // namespace
+}  // namespace
 
 // Distance to the walls of the Voronoi cells of packed seeds: within a convex cell the nearest wall is
 // that of the nearest bisector, so the distance is exact in the voids.
@@ -50,11 +50,14 @@ BrickField foamField(const ExemplarRequest& request, const RunContext& ctx) {
     const std::vector<PackedBall> seeds = packBalls(low, high, 0.42 * f, 0.5 * f, 0.5, request.seed, ctx);
     return BrickField::generate(request.box, ctx, [&](const IndexBox& brick, float* samples) {
         const Vec3d middle{brick.min.x + 3.5, brick.min.y + 3.5, brick.min.z + 3.5};
-        // No point is farther than 1.3 features from its seed in these packings; its cell's neighbours are within twice that.
+        // No point is farther than 1.3 features from its seed in these packings; its cell's neighbours are
+        // within twice that.
         std::vector<Vec3d> near;
         for (const PackedBall& seed : seeds)
             if (length(seed.centre - middle) < 2.7 * f + 7) near.push_back(seed.centre);
-        std::sort(near.begin(), near.end(), [&](const Vec3d& a, const Vec3d& b) { return dot(a - middle, a - middle) < dot(b - middle, b - middle); });
+        std::sort(near.begin(), near.end(), [&](const Vec3d& a, const Vec3d& b) {
+            return dot(a - middle, a - middle) < dot(b - middle, b - middle);
+        });
         for (int x = 0; x < kSide; ++x)
             for (int y = 0; y < kSide; ++y)
                 for (int z = 0; z < kSide; ++z) {
@@ -66,9 +69,11 @@ BrickField foamField(const ExemplarRequest& request, const RunContext& ctx) {
                     for (std::size_t i = 0; i < near.size(); ++i) {
                         if (i == own) continue;
                         const Vec3d apart = near[i] - near[own];
-                        nearest = std::min(nearest, dot((near[i] + near[own]) * 0.5 - p, apart) / length(apart));
+                        nearest =
+                            std::min(nearest, dot((near[i] + near[own]) * 0.5 - p, apart) / length(apart));
                     }
-                    *samples++ = float(std::clamp(nearest - wall, -double(kExemplarLimit), double(kExemplarLimit)));
+                    *samples++ =
+                        float(std::clamp(nearest - wall, -double(kExemplarLimit), double(kExemplarLimit)));
                 }
     });
 }
@@ -89,7 +94,8 @@ BrickField spongeField(const ExemplarRequest& request, const RunContext& ctx) {
             for (int y = 0; y < kSide; ++y)
                 for (int z = 0; z < kSide; ++z) {
                     const Vec3d p{double(brick.min.x + x), double(brick.min.y + y), double(brick.min.z + z)};
-                    *samples++ = float(std::clamp((0.1 - sumOf(waves, p)) / slope, -double(kExemplarLimit), double(kExemplarLimit)));
+                    *samples++ = float(std::clamp((0.1 - sumOf(waves, p)) / slope, -double(kExemplarLimit),
+                                                  double(kExemplarLimit)));
                 }
     });
 }
@@ -113,15 +119,19 @@ BrickField terrainField(const ExemplarRequest& request, const RunContext& ctx) {
     std::vector<double> heights(std::size_t(wide) * std::size_t(deep));
     for (int x = 0; x < wide; ++x)
         for (int y = 0; y < deep; ++y)
-            heights[std::size_t(x) * std::size_t(deep) + std::size_t(y)] = level + sumOf(waves, {double(request.box.min.x + x), double(request.box.min.y + y), 0});
+            heights[std::size_t(x) * std::size_t(deep) + std::size_t(y)] =
+                level + sumOf(waves, {double(request.box.min.x + x), double(request.box.min.y + y), 0});
     return BrickField::generate(request.box, ctx, [&](const IndexBox& brick, float* samples) {
         for (int x = 0; x < kSide; ++x)
             for (int y = 0; y < kSide; ++y) {
-                const double top = heights[std::size_t(brick.min.x - request.box.min.x + x) * std::size_t(deep) + std::size_t(brick.min.y - request.box.min.y + y)];
+                const double top =
+                    heights[std::size_t(brick.min.x - request.box.min.x + x) * std::size_t(deep) +
+                            std::size_t(brick.min.y - request.box.min.y + y)];
                 for (int z = 0; z < kSide; ++z)
-                    *samples++ = float(std::clamp(brick.min.z + z - top, -double(kExemplarLimit), double(kExemplarLimit)));
+                    *samples++ = float(
+                        std::clamp(brick.min.z + z - top, -double(kExemplarLimit), double(kExemplarLimit)));
             }
     });
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -24,4 +24,4 @@ BrickField foamField(const ExemplarRequest& request, const RunContext& ctx);
 BrickField spongeField(const ExemplarRequest& request, const RunContext& ctx);
 BrickField terrainField(const ExemplarRequest& request, const RunContext& ctx);
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -13,12 +13,17 @@ namespace {
 enum Purpose : std::uint32_t { kNode = 1, kRing = 2, kFibre = 3, kYarn = 4, kPhase = 5 };
 
 std::uint64_t siteKey(int i, int j, int k = 0) {
-    return std::uint64_t(std::uint32_t(i + 100000) & 0x1FFFFF) << 42 | std::uint64_t(std::uint32_t(j + 100000) & 0x1FFFFF) << 21 |
+    return std::uint64_t(std::uint32_t(i + 100000) & 0x1FFFFF) << 42 |
+           std::uint64_t(std::uint32_t(j + 100000) & 0x1FFFFF) << 21 |
            std::uint64_t(std::uint32_t(k + 100000) & 0x1FFFFF);
 }
 
-int firstSite(int low, double spacing) { return int(std::floor(low / spacing)) - 1; }
-int lastSite(int high, double spacing) { return int(std::ceil(high / spacing)) + 1; }
+int firstSite(int low, double spacing) {
+    return int(std::floor(low / spacing)) - 1;
+}
+int lastSite(int high, double spacing) {
+    return int(std::ceil(high / spacing)) + 1;
+}
 
 // A lattice that starts at a random phase, so that seeds differ where nothing else does.
 Vec3d phaseOf(const ExemplarRequest& request) {
@@ -30,7 +35,7 @@ Vec3d jitter(Random& random, double by) {
     return {random.uniform(-by, by), random.uniform(-by, by), random.uniform(-by, by)};
 }
 
-} // namespace
+}  // namespace
 
 std::vector<Primitive> ballsPrimitives(const ExemplarRequest& request, const RunContext& ctx) {
     const double radius = request.feature / 2;
@@ -110,7 +115,8 @@ std::vector<Primitive> fibresPrimitives(const ExemplarRequest& request) {
             const double swing = f * random.uniform(0.10, 0.18), turn = 2 * kPi * random.uniform();
             const double wave = 2 * kPi / (f * random.uniform(2.6, 3.4)), drift = random.uniform(0.3, 1.2);
             const auto at = [&](double x) {
-                return Vec3d{x, y + swing * sine(wave * x + turn), z + swing * cosine(wave * x * drift + turn)};
+                return Vec3d{x, y + swing * sine(wave * x + turn),
+                             z + swing * cosine(wave * x * drift + turn)};
             };
             const double step = f / 8;  // chord error under 0.2 % of the feature
             for (double x = request.box.min.x - step; x < request.box.max.x + step; x += step)
@@ -126,7 +132,8 @@ std::vector<Primitive> weavePrimitives(const ExemplarRequest& request) {
     std::vector<Primitive> primitives;
     for (int along = 0; along < 2; ++along) {
         const int across = 1 - along;
-        for (int j = firstSite(request.box.min[across], f) - 1; j <= lastSite(request.box.max[across], f); ++j) {
+        for (int j = firstSite(request.box.min[across], f) - 1; j <= lastSite(request.box.max[across], f);
+             ++j) {
             Random random(request.seed, siteKey(along, j), kYarn);
             const double side = j * f + phase[across] + random.uniform(-0.05, 0.05) * f;
             const double radius = f * random.uniform(0.21, 0.24), lift = f * random.uniform(0.24, 0.27);
@@ -147,4 +154,4 @@ std::vector<Primitive> weavePrimitives(const ExemplarRequest& request) {
     return primitives;
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -12,8 +12,8 @@ namespace vdbsynth {
 namespace {
 
 constexpr std::uint32_t kPackingPurpose = 0x7061636b;
-constexpr int kRounds = 80;       // overlap is below 2 % of the radius after 60 on densities up to 0.55
-constexpr double kGap = 0.02;     // of the radius, left between balls
+constexpr int kRounds = 80;    // overlap is below 2 % of the radius after 60 on densities up to 0.55
+constexpr double kGap = 0.02;  // of the radius, left between balls
 
 // Calls pair(i, j) for all i < j closer than `reach`, in a fixed order.
 void forClosePairs(const std::vector<PackedBall>& balls, const Vec3d& low, const Vec3d& high, double reach,
@@ -23,11 +23,17 @@ void forClosePairs(const std::vector<PackedBall>& balls, const Vec3d& low, const
     const auto cellOf = [&](const Vec3d& p) {
         Index3 c;
         for (int axis = 0; axis < 3; ++axis)
-            c[axis] = std::clamp(int(std::floor((p[axis] - low[axis]) / (high[axis] - low[axis]) * cells[axis])), 0, cells[axis] - 1);
+            c[axis] =
+                std::clamp(int(std::floor((p[axis] - low[axis]) / (high[axis] - low[axis]) * cells[axis])), 0,
+                           cells[axis] - 1);
         return c;
     };
-    const auto flat = [&](const Index3& c) { return (std::size_t(c.x) * std::size_t(cells.y) + std::size_t(c.y)) * std::size_t(cells.z) + std::size_t(c.z); };
-    std::vector<std::vector<std::size_t>> lists(std::size_t(cells.x) * std::size_t(cells.y) * std::size_t(cells.z));
+    const auto flat = [&](const Index3& c) {
+        return (std::size_t(c.x) * std::size_t(cells.y) + std::size_t(c.y)) * std::size_t(cells.z) +
+               std::size_t(c.z);
+    };
+    std::vector<std::vector<std::size_t>> lists(std::size_t(cells.x) * std::size_t(cells.y) *
+                                                std::size_t(cells.z));
     for (std::size_t i = 0; i < balls.size(); ++i) lists[flat(cellOf(balls[i].centre))].push_back(i);
     for (std::size_t i = 0; i < balls.size(); ++i) {
         const Index3 c = cellOf(balls[i].centre);
@@ -39,7 +45,7 @@ void forClosePairs(const std::vector<PackedBall>& balls, const Vec3d& low, const
     }
 }
 
-} // namespace
+}  // namespace
 
 std::vector<PackedBall> packBalls(const Vec3d& low, const Vec3d& high, double radiusLow, double radiusHigh,
                                   double density, std::uint64_t seed, const RunContext& ctx) {
@@ -69,20 +75,24 @@ std::vector<PackedBall> packBalls(const Vec3d& low, const Vec3d& high, double ra
         });
         for (std::size_t i = 0; i < balls.size(); ++i)
             for (int axis = 0; axis < 3; ++axis)
-                balls[i].centre[axis] = std::clamp(balls[i].centre[axis] + push[i][axis], low[axis], high[axis]);
+                balls[i].centre[axis] =
+                    std::clamp(balls[i].centre[axis] + push[i][axis], low[axis], high[axis]);
     }
     // Each pair shares its distance by the ratio of the radii, so after this no pair can overlap.
     std::vector<double> radius(balls.size());
     for (std::size_t i = 0; i < balls.size(); ++i) radius[i] = balls[i].radius;
     forClosePairs(balls, low, high, reach, [&](std::size_t i, std::size_t j) {
-        const double share = length(balls[j].centre - balls[i].centre) / (balls[i].radius + balls[j].radius) / (1 + kGap);
+        const double share =
+            length(balls[j].centre - balls[i].centre) / (balls[i].radius + balls[j].radius) / (1 + kGap);
         radius[i] = std::min(radius[i], balls[i].radius * share);
         radius[j] = std::min(radius[j], balls[j].radius * share);
     });
     for (std::size_t i = 0; i < balls.size(); ++i) balls[i].radius = radius[i];
     // A ball squeezed to a crumb would be a shape that the process does not have.
-    balls.erase(std::remove_if(balls.begin(), balls.end(), [&](const PackedBall& b) { return b.radius < 0.6 * radiusLow; }), balls.end());
+    balls.erase(std::remove_if(balls.begin(), balls.end(),
+                               [&](const PackedBall& b) { return b.radius < 0.6 * radiusLow; }),
+                balls.end());
     return balls;
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -22,8 +22,11 @@ public:
             primitives[i].bound(centre, radius);
             Index3 low, high;
             for (int axis = 0; axis < 3; ++axis) {
-                low[axis] = std::max(0, int(std::floor((centre[axis] - radius - reach - box.min[axis]) / kCell)));
-                high[axis] = std::min(mCells[axis] - 1, int(std::floor((centre[axis] + radius + reach - box.min[axis]) / kCell)));
+                low[axis] =
+                    std::max(0, int(std::floor((centre[axis] - radius - reach - box.min[axis]) / kCell)));
+                high[axis] =
+                    std::min(mCells[axis] - 1,
+                             int(std::floor((centre[axis] + radius + reach - box.min[axis]) / kCell)));
             }
             for (int x = low.x; x <= high.x; ++x)
                 for (int y = low.y; y <= high.y; ++y)
@@ -38,14 +41,15 @@ public:
 
 private:
     std::size_t index(const Index3& c) const {
-        return (std::size_t(c.x) * std::size_t(mCells.y) + std::size_t(c.y)) * std::size_t(mCells.z) + std::size_t(c.z);
+        return (std::size_t(c.x) * std::size_t(mCells.y) + std::size_t(c.y)) * std::size_t(mCells.z) +
+               std::size_t(c.z);
     }
     IndexBox mBox;
     Index3 mCells;
     std::vector<std::vector<std::uint32_t>> mLists;
 };
 
-} // namespace
+}  // namespace
 
 double Primitive::distance(const Vec3d& p) const {
     if (kind == Kind::Torus) {
@@ -70,13 +74,18 @@ void Primitive::bound(Vec3d& centre, double& boundRadius) const {
     }
 }
 
-Primitive ball(const Vec3d& centre, double radius) { return {Primitive::Kind::Capsule, centre, centre, radius, 0}; }
-Primitive capsule(const Vec3d& a, const Vec3d& b, double radius) { return {Primitive::Kind::Capsule, a, b, radius, 0}; }
+Primitive ball(const Vec3d& centre, double radius) {
+    return {Primitive::Kind::Capsule, centre, centre, radius, 0};
+}
+Primitive capsule(const Vec3d& a, const Vec3d& b, double radius) {
+    return {Primitive::Kind::Capsule, a, b, radius, 0};
+}
 Primitive torus(const Vec3d& centre, const Vec3d& axis, double ring, double tube) {
     return {Primitive::Kind::Torus, centre, normalized(axis), tube, ring};
 }
 
-BrickField unionField(const std::vector<Primitive>& primitives, const IndexBox& box, float limit, const RunContext& ctx) {
+BrickField unionField(const std::vector<Primitive>& primitives, const IndexBox& box, float limit,
+                      const RunContext& ctx) {
     const Bins bins(primitives, box, double(limit));
     return BrickField::generate(box, ctx, [&](const IndexBox& brick, float* samples) {
         const Vec3d middle{brick.min.x + 3.5, brick.min.y + 3.5, brick.min.z + 3.5};
@@ -89,10 +98,11 @@ BrickField unionField(const std::vector<Primitive>& primitives, const IndexBox& 
                 for (int z = 0; z < kSide; ++z) {
                     const Vec3d p{double(brick.min.x + x), double(brick.min.y + y), double(brick.min.z + z)};
                     double nearest = double(limit);
-                    for (const Primitive* primitive : near) nearest = std::min(nearest, primitive->distance(p));
+                    for (const Primitive* primitive : near)
+                        nearest = std::min(nearest, primitive->distance(p));
                     *samples++ = float(std::max(nearest, -double(limit)));
                 }
     });
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

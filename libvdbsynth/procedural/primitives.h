@@ -10,9 +10,9 @@ namespace vdbsynth {
 /// A ball, capsule or torus: signed distances are exact. [voxels]
 struct Primitive {
     enum class Kind { Capsule, Torus } kind = Kind::Capsule;
-    Vec3d a, b;          ///< capsule: ends (equal for a ball); torus: centre and unit axis
-    double radius = 1;   ///< of the ball, the capsule or the torus's tube
-    double ring = 0;     ///< torus: distance from centre to the middle of the tube
+    Vec3d a, b;         ///< capsule: ends (equal for a ball); torus: centre and unit axis
+    double radius = 1;  ///< of the ball, the capsule or the torus's tube
+    double ring = 0;    ///< torus: distance from centre to the middle of the tube
 
     double distance(const Vec3d& p) const;
     /// A ball that holds the primitive.
@@ -25,6 +25,7 @@ Primitive torus(const Vec3d& centre, const Vec3d& axis, double ring, double tube
 
 /// Distance to the union of primitives over a box, clamped to +-limit. Outside the union it is exact; inside
 /// overlaps it is the deepest primitive's. Cost O(bricks * primitives near each).
-BrickField unionField(const std::vector<Primitive>& primitives, const IndexBox& box, float limit, const RunContext& ctx);
+BrickField unionField(const std::vector<Primitive>& primitives, const IndexBox& box, float limit,
+                      const RunContext& ctx);
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

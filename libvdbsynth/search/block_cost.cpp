@@ -5,7 +5,8 @@
 namespace vdbsynth {
 namespace {
 
-constexpr int kLanes = 8;  // independent sums, so that the compiler may use vector units without changing the order
+constexpr int kLanes =
+    8;  // independent sums, so that the compiler may use vector units without changing the order
 
 double slabSum(const float* a, const float* b, const std::uint8_t* known, int samples, double lanes[kLanes]) {
     int i = 0;
@@ -23,7 +24,7 @@ double slabSum(const float* a, const float* b, const std::uint8_t* known, int sa
     return sum;
 }
 
-} // namespace
+}  // namespace
 
 double blockCost(const BrickField& exemplar, const Index3& corner, int block, const float* query,
                  const std::uint8_t* known, std::int64_t count, double giveUp) {
@@ -34,7 +35,9 @@ double blockCost(const BrickField& exemplar, const Index3& corner, int block, co
     double cost = 0;
     for (int x = 0; x < block; ++x) {
         exemplar.readBox({corner.x + x, corner.y, corner.z}, {1, block, block}, values.data());
-        cost = slabSum(values.data(), query + std::ptrdiff_t(x) * slab, known ? known + std::ptrdiff_t(x) * slab : nullptr, slab, lanes) / double(count);
+        cost = slabSum(values.data(), query + std::ptrdiff_t(x) * slab,
+                       known ? known + std::ptrdiff_t(x) * slab : nullptr, slab, lanes) /
+               double(count);
         if (cost > giveUp) return cost;
     }
     return cost;
@@ -48,4 +51,4 @@ std::int64_t countKnown(const std::uint8_t* known, int block) {
     return count;
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

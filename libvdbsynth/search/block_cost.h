@@ -21,4 +21,4 @@ double blockCost(const BrickField& exemplar, const Index3& corner, int block, co
 /// Number of known samples.
 std::int64_t countKnown(const std::uint8_t* known, int block);
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -33,12 +33,15 @@ class Best {
 public:
     explicit Best(int count) : mCount(std::size_t(count)) {}
     // What a bound must not exceed to be worth opening. Equal costs still count: the tie goes by position.
-    double limit() const { return mMatches.size() < mCount ? std::numeric_limits<double>::infinity() : mMatches.back().cost; }
+    double limit() const {
+        return mMatches.size() < mCount ? std::numeric_limits<double>::infinity() : mMatches.back().cost;
+    }
     // False if the match was not good enough, and so none of the same cost at a later position is.
     bool add(const BlockMatch& match) {
         if (mMatches.size() == mCount && betterMatch(mMatches.back(), match)) return false;
         const auto place = std::lower_bound(mMatches.begin(), mMatches.end(), match, betterMatch);
-        if (place != mMatches.end() && place->position == match.position && place->cost == match.cost) return true;
+        if (place != mMatches.end() && place->position == match.position && place->cost == match.cost)
+            return true;
         mMatches.insert(place, match);
         if (mMatches.size() > mCount) mMatches.pop_back();
         return true;
@@ -68,9 +71,15 @@ QueryLevel queryLevel(const BlockQuery& query, int block, int cell, std::int64_t
                 bool whole = true;
                 for (int i = 0; i < cell && whole; ++i)
                     for (int j = 0; j < cell && whole; ++j) {
-                        const std::size_t row = (std::size_t(x * cell + i) * std::size_t(block) + std::size_t(y * cell + j)) * std::size_t(block) + std::size_t(z * cell);
+                        const std::size_t row =
+                            (std::size_t(x * cell + i) * std::size_t(block) + std::size_t(y * cell + j)) *
+                                std::size_t(block) +
+                            std::size_t(z * cell);
                         for (int k = 0; k < cell; ++k) {
-                            if (query.known && !query.known[row + std::size_t(k)]) { whole = false; break; }
+                            if (query.known && !query.known[row + std::size_t(k)]) {
+                                whole = false;
+                                break;
+                            }
                             sum += double(query.samples[row + std::size_t(k)]);
                         }
                     }
@@ -84,8 +93,13 @@ QueryLevel queryLevel(const BlockQuery& query, int block, int cell, std::int64_t
 class Search {
 public:
     Search(const BlockIndexData& data, const BlockQuery& query, int count, BlockSearchCounts& counts)
-        : mData(data), mQuery(query), mCounts(counts), mBest(count), mKnown(countKnown(query.known, data.block)) {
-        mCandidates = query.candidates.empty() ? data.positions : query.candidates.intersection(data.positions);
+        : mData(data),
+          mQuery(query),
+          mCounts(counts),
+          mBest(count),
+          mKnown(countKnown(query.known, data.block)) {
+        mCandidates =
+            query.candidates.empty() ? data.positions : query.candidates.intersection(data.positions);
         mRestricted = !(mCandidates == data.positions);
         float largest = data.largest;
         for (std::int64_t i = 0; i < std::int64_t(data.block) * data.block * data.block; ++i)
@@ -106,9 +120,12 @@ public:
             if (front.bound > mBest.limit()) break;
             std::pop_heap(mQueue.begin(), mQueue.end(), laterInQueue);
             mQueue.pop_back();
-            if (front.level == 0) openGroup(front.id);
-            else if (front.level < mLevels.size()) push(front.id, front.level + 1);
-            else evaluate(front.id);
+            if (front.level == 0)
+                openGroup(front.id);
+            else if (front.level < mLevels.size())
+                push(front.id, front.level + 1);
+            else
+                evaluate(front.id);
         }
         return mBest.take();
     }
@@ -116,7 +133,8 @@ public:
 private:
     double cost(const Index3& position) {
         ++mCounts.exact;
-        return blockCost(*mData.exemplar, position, mData.block, mQuery.samples, mQuery.known, mKnown, mBest.limit());
+        return blockCost(*mData.exemplar, position, mData.block, mQuery.samples, mQuery.known, mKnown,
+                         mBest.limit());
     }
 
     // Every block costs 0: the first eligible positions, by order.
@@ -133,7 +151,8 @@ private:
             double bound = 0;
             for (std::size_t i = 0; i < level.mean.size(); ++i) {
                 const std::size_t cell = cellNumber(level.offset[i]);
-                const float below = group.low[cell] - level.mean[i] - mMargin, above = level.mean[i] - group.high[cell] - mMargin;
+                const float below = group.low[cell] - level.mean[i] - mMargin,
+                            above = level.mean[i] - group.high[cell] - mMargin;
                 const double d = double(std::max({below, above, 0.f}));
                 bound += d * d;
             }
@@ -163,7 +182,8 @@ private:
         const Index3 corner = mData.position(node);
         double bound = 0;
         for (std::size_t i = 0; i < means.mean.size(); ++i) {
-            const float d = std::max(std::abs(field.inside(corner + means.offset[i]) - means.mean[i]) - mMargin, 0.f);
+            const float d =
+                std::max(std::abs(field.inside(corner + means.offset[i]) - means.mean[i]) - mMargin, 0.f);
             bound += double(d) * double(d);
         }
         bound *= means.weight * kBoundSafety;
@@ -176,7 +196,9 @@ private:
 
     void addMembers(std::uint32_t node, double value) {
         if (value > mBest.limit()) return;
-        mData.forMembers(node, mCandidates, [&](const Index3& position) { return mBest.add({position, value}); });
+        mData.forMembers(node, mCandidates, [&](const Index3& position) {
+            return mBest.add({position, value});
+        });
     }
 
     // Sums of squares of floats against sums of rounded floats: relative error below 1e-6.
@@ -194,7 +216,7 @@ private:
     std::vector<Entry> mQueue;
 };
 
-} // namespace
+}  // namespace
 
 struct BlockIndex::Impl {
     BlockIndexData data;
@@ -205,25 +227,38 @@ BlockIndex::BlockIndex(BlockIndex&&) noexcept = default;
 BlockIndex& BlockIndex::operator=(BlockIndex&&) noexcept = default;
 BlockIndex::~BlockIndex() = default;
 
-BlockIndex BlockIndex::build(std::shared_ptr<const BrickField> exemplar, const BlockIndexOptions& options, const RunContext& ctx) {
+BlockIndex BlockIndex::build(std::shared_ptr<const BrickField> exemplar, const BlockIndexOptions& options,
+                             const RunContext& ctx) {
     auto impl = std::make_unique<Impl>();
     impl->data = buildBlockIndexData(std::move(exemplar), options, ctx);
     return BlockIndex(std::move(impl));
 }
 
-std::vector<BlockMatch> BlockIndex::match(const BlockQuery& query, int count, BlockSearchCounts* counts) const {
+std::vector<BlockMatch> BlockIndex::match(const BlockQuery& query, int count,
+                                          BlockSearchCounts* counts) const {
     requireOption(count >= 1, "count", std::to_string(count), "at least 1");
     BlockSearchCounts ignored;
     return Search(mImpl->data, query, count, counts ? *counts : ignored).run();
 }
 
-int BlockIndex::block() const { return mImpl->data.block; }
-const BrickField& BlockIndex::exemplar() const { return *mImpl->data.exemplar; }
-const IndexBox& BlockIndex::positions() const { return mImpl->data.positions; }
-std::size_t BlockIndex::memoryBytes() const { return mImpl->data.memoryBytes(); }
-std::size_t BlockIndex::nodeCount() const { return mImpl->data.nodeCount(); }
+int BlockIndex::block() const {
+    return mImpl->data.block;
+}
+const BrickField& BlockIndex::exemplar() const {
+    return *mImpl->data.exemplar;
+}
+const IndexBox& BlockIndex::positions() const {
+    return mImpl->data.positions;
+}
+std::size_t BlockIndex::memoryBytes() const {
+    return mImpl->data.memoryBytes();
+}
+std::size_t BlockIndex::nodeCount() const {
+    return mImpl->data.nodeCount();
+}
 
-std::vector<BlockMatch> matchBlocksLinearly(const BrickField& exemplar, int block, const BlockQuery& query, int count, const BrickField* mask) {
+std::vector<BlockMatch> matchBlocksLinearly(const BrickField& exemplar, int block, const BlockQuery& query,
+                                            int count, const BrickField* mask) {
     const IndexBox positions = blockPositions(exemplar, block);
     const IndexBox box = query.candidates.empty() ? positions : query.candidates.intersection(positions);
     const std::int64_t known = countKnown(query.known, block);
@@ -233,9 +268,11 @@ std::vector<BlockMatch> matchBlocksLinearly(const BrickField& exemplar, int bloc
             for (int z = box.min.z; z <= box.max.z; ++z) {
                 const Index3 p{x, y, z};
                 if (mask && !blockInsideMask(*mask, p, block)) continue;
-                best.add({p, known == 0 ? 0.0 : blockCost(exemplar, p, block, query.samples, query.known, known, best.limit())});
+                best.add({p, known == 0 ? 0.0
+                                        : blockCost(exemplar, p, block, query.samples, query.known, known,
+                                                    best.limit())});
             }
     return best.take();
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

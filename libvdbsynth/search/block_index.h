@@ -11,10 +11,10 @@ namespace vdbsynth {
 
 /// A block to look for. All pointers are borrowed for the call.
 struct BlockQuery {
-    const float* samples = nullptr;        ///< [N x N x N], z fastest, in the exemplar's unit
-    const std::uint8_t* known = nullptr;   ///< [N x N x N] nonzero where samples count; null: everywhere
-    IndexBox candidates;                   ///< where the match's minimum corner may lie; empty: anywhere
-    std::vector<Index3> hints;             ///< places worth trying first; they change the time, never the answer
+    const float* samples = nullptr;       ///< [N x N x N], z fastest, in the exemplar's unit
+    const std::uint8_t* known = nullptr;  ///< [N x N x N] nonzero where samples count; null: everywhere
+    IndexBox candidates;                  ///< where the match's minimum corner may lie; empty: anywhere
+    std::vector<Index3> hints;  ///< places worth trying first; they change the time, never the answer
 };
 
 struct BlockMatch {
@@ -24,20 +24,22 @@ struct BlockMatch {
 
 /// What a search did, summed over calls by the caller.
 struct BlockSearchCounts {
-    std::uint64_t groups = 0;    ///< groups of positions opened
-    std::uint64_t nodes = 0;     ///< bounds computed for single nodes
-    std::uint64_t exact = 0;     ///< full costs computed
+    std::uint64_t groups = 0;  ///< groups of positions opened
+    std::uint64_t nodes = 0;   ///< bounds computed for single nodes
+    std::uint64_t exact = 0;   ///< full costs computed
 };
 
 struct BlockIndexOptions {
     int block = 16;                    ///< N, side of the blocks [voxels], 4..256
-    const BrickField* mask = nullptr;  ///< a block counts only if the mask is 1 in all of it; null: all blocks; same box as the exemplar
+    const BrickField* mask = nullptr;  ///< a block counts only if the mask is 1 in all of it; null: all
+                                       ///< blocks; same box as the exemplar
 };
 
 /// Exact best-match search over all blocks of a sparse field: the search tree of [lagae2004, section 4].
 /// A node's bound is its distance at a level of the block pyramid, never above the distance at a finer one
 /// (Eq. 2); nodes are opened best first; the first leaf to reach the front is the best match. Here
-///  - levels are means over cubes of N/2, N/4 ... samples, any N; under a query's mask a cube counts only if it
+///  - levels are means over cubes of N/2, N/4 ... samples, any N; under a query's mask a cube counts only if
+///  it
 ///    is wholly known, and whatever the cubes leave out counts as 0, so bounds hold for any mask;
 ///  - blocks with identical samples are one node (all constant regions of one value are one node);
 ///  - the parent of partly identical nodes is a group of neighbouring positions with the range of each mean,
@@ -50,7 +52,8 @@ public:
     ///              block inside the mask), Memory, Cancelled
     /// @par Cost    time O(positions that are not constant * N), memory about 20 bytes a sample of those
     /// @par Repeats same bits for any number of threads
-    static BlockIndex build(std::shared_ptr<const BrickField> exemplar, const BlockIndexOptions& options, const RunContext& ctx = {});
+    static BlockIndex build(std::shared_ptr<const BrickField> exemplar, const BlockIndexOptions& options,
+                            const RunContext& ctx = {});
 
     BlockIndex(BlockIndex&&) noexcept;
     BlockIndex& operator=(BlockIndex&&) noexcept;
@@ -60,7 +63,8 @@ public:
     /// sample costs 0 everywhere. May be called from many threads at once.
     /// @throw Error InvalidOption (count under 1)
     /// @par Repeats yes; the answer equals matchBlocksLinearly's
-    std::vector<BlockMatch> match(const BlockQuery& query, int count = 1, BlockSearchCounts* counts = nullptr) const;
+    std::vector<BlockMatch> match(const BlockQuery& query, int count = 1,
+                                  BlockSearchCounts* counts = nullptr) const;
 
     int block() const;
     const BrickField& exemplar() const;
@@ -77,7 +81,7 @@ private:
 };
 
 /// The oracle: the same answer by a scan over all positions.
-std::vector<BlockMatch> matchBlocksLinearly(const BrickField& exemplar, int block, const BlockQuery& query, int count = 1,
-                                            const BrickField* mask = nullptr);
+std::vector<BlockMatch> matchBlocksLinearly(const BrickField& exemplar, int block, const BlockQuery& query,
+                                            int count = 1, const BrickField* mask = nullptr);
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -10,9 +10,9 @@ namespace vdbsynth {
 
 /// A run of nodes whose positions are neighbours, with the range of each of their eight coarsest means.
 struct BlockGroup {
-    IndexBox box;                    // of the nodes' first positions
+    IndexBox box;                       // of the nodes' first positions
     std::uint32_t first = 0, last = 0;  // nodes
-    bool shared = false;             // some node stands for several positions, which may lie anywhere
+    bool shared = false;                // some node stands for several positions, which may lie anywhere
     std::array<float, 8> low, high;
 };
 
@@ -21,10 +21,10 @@ struct BlockIndexData {
     std::shared_ptr<const BrickField> exemplar;
     std::shared_ptr<const BrickField> maskMeans;  // mean of the mask over each block; null: all blocks count
     int block = 0;
-    float largest = 0;                       // largest |sample|
-    IndexBox positions;                      // of block minimum corners
-    std::vector<int> cells;                  // sides of the means' cubes, coarse to fine
-    std::vector<BrickField> means;           // one field a level
+    float largest = 0;              // largest |sample|
+    IndexBox positions;             // of block minimum corners
+    std::vector<int> cells;         // sides of the means' cubes, coarse to fine
+    std::vector<BrickField> means;  // one field a level
     std::vector<BlockGroup> groups;
     std::vector<std::uint64_t> nodes;        // first position of each node, as its number in `positions`
     std::vector<std::uint32_t> memberBegin;  // [nodes + 1] into members
@@ -35,7 +35,9 @@ struct BlockIndexData {
         return {int(number / nz / ny), int(number / nz % ny), int(number % nz)};
     }
     std::uint64_t numberOf(const Index3& p) const {
-        return (std::uint64_t(p.x) * std::uint64_t(positions.size().y) + std::uint64_t(p.y)) * std::uint64_t(positions.size().z) + std::uint64_t(p.z);
+        return (std::uint64_t(p.x) * std::uint64_t(positions.size().y) + std::uint64_t(p.y)) *
+                   std::uint64_t(positions.size().z) +
+               std::uint64_t(p.z);
     }
     Index3 position(std::uint32_t node) const { return positionOf(nodes[node]); }
     bool isShared(std::uint32_t node) const { return memberBegin[node] != memberBegin[node + 1]; }
@@ -48,7 +50,8 @@ struct BlockIndexData {
     void forMembers(std::uint32_t node, const IndexBox& box, Visit&& visit) const {
         const Index3 first = position(node);
         if (box.contains(first) && !visit(first)) return;
-        const auto begin = members.begin() + std::ptrdiff_t(memberBegin[node]), end = members.begin() + std::ptrdiff_t(memberBegin[node + 1]);
+        const auto begin = members.begin() + std::ptrdiff_t(memberBegin[node]),
+                   end = members.begin() + std::ptrdiff_t(memberBegin[node + 1]);
         const std::uint64_t last = numberOf(box.max);
         for (auto m = std::lower_bound(begin, end, numberOf(box.min)); m != end && *m <= last; ++m) {
             const Index3 p = positionOf(*m);
@@ -60,6 +63,7 @@ struct BlockIndexData {
 /// Box of all minimum corners of blocks inside a field. @throw Error Unusable (block larger than the field)
 IndexBox blockPositions(const BrickField& exemplar, int block);
 bool blockInsideMask(const BrickField& mask, const Index3& corner, int block);
-BlockIndexData buildBlockIndexData(std::shared_ptr<const BrickField> exemplar, const BlockIndexOptions& options, const RunContext& ctx);
+BlockIndexData buildBlockIndexData(std::shared_ptr<const BrickField> exemplar,
+                                   const BlockIndexOptions& options, const RunContext& ctx);
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -15,15 +15,21 @@ namespace {
 constexpr std::uint32_t kFirstBlockPurpose = 0x66697273;
 using Fields = std::vector<std::shared_ptr<const BrickField>>;
 
-int halfOf(int n) { return (n + 1) / 2; }
-Index3 halfOf(const Index3& n) { return {halfOf(n.x), halfOf(n.y), halfOf(n.z)}; }
+int halfOf(int n) {
+    return (n + 1) / 2;
+}
+Index3 halfOf(const Index3& n) {
+    return {halfOf(n.x), halfOf(n.y), halfOf(n.z)};
+}
 
 // The longest block that leaves the search a choice along every axis of an exemplar.
 int longestBlock(const Index3& exemplar, const Index3& target, const std::array<Border, 3>& border) {
     int longest = 256;
     for (int axis = 0; axis < 3; ++axis) {
         const bool grows = exemplar[axis] != target[axis];
-        longest = std::min(longest, !grows ? exemplar[axis] : border[std::size_t(axis)] == Border::Object ? exemplar[axis] / 4 : exemplar[axis] / 2);
+        longest = std::min(longest, !grows                                        ? exemplar[axis]
+                                    : border[std::size_t(axis)] == Border::Object ? exemplar[axis] / 4
+                                                                                  : exemplar[axis] / 2);
     }
     return longest;
 }
@@ -37,7 +43,8 @@ struct Pass {
 
 class Synthesis {
 public:
-    Synthesis(const BlockSynthesisOptions& options, const RunContext& ctx) : mOptions(options), mContext(ctx) {}
+    Synthesis(const BlockSynthesisOptions& options, const RunContext& ctx)
+        : mOptions(options), mContext(ctx) {}
 
     // Runs one pass. `coarse`: the result and map of the pass before, null for the first.
     void run(const Pass& pass, const BrickField* coarse, const PatchMap* coarseMap, const BrickField* mask,
@@ -47,7 +54,8 @@ public:
         indexOptions.mask = mask;
         Stage stage(mContext, name, 1);
         std::vector<BlockIndex> indices;
-        for (const auto& exemplar : pass.exemplars) indices.push_back(BlockIndex::build(exemplar, indexOptions, mContext));
+        for (const auto& exemplar : pass.exemplars)
+            indices.push_back(BlockIndex::build(exemplar, indexOptions, mContext));
         std::uint64_t bytes = 0;
         for (const BlockIndex& index : indices) bytes += index.memoryBytes();
         mStats.indexBytes = std::max(mStats.indexBytes, bytes);
@@ -56,7 +64,8 @@ public:
         map.stride = pass.block / 2;
         map.overhang = 0;
         map.allocate();
-        field = coarse ? doubled(*coarse, pass.target, mContext) : BrickField(IndexBox::fromSize(pass.target), 0.f);
+        field = coarse ? doubled(*coarse, pass.target, mContext)
+                       : BrickField(IndexBox::fromSize(pass.target), 0.f);
         walk(pass, indices, coarse != nullptr, coarseMap, field, map, name);
     }
 
@@ -69,8 +78,8 @@ private:
         BlockSearchCounts counts;
     };
 
-    void walk(const Pass& pass, const std::vector<BlockIndex>& indices, bool seeded, const PatchMap* coarseMap,
-              BrickField& field, PatchMap& map, const std::string& name) {
+    void walk(const Pass& pass, const std::vector<BlockIndex>& indices, bool seeded,
+              const PatchMap* coarseMap, BrickField& field, PatchMap& map, const std::string& name) {
         const Index3 lattice = map.lattice();
         Stage stage(mContext, name, std::size_t(lattice.x) * std::size_t(lattice.y) * std::size_t(lattice.z));
         double costs = 0;
@@ -83,7 +92,8 @@ private:
                 }
             std::vector<Found> found(blocks.size());
             parallelFor(mContext, blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t i = begin; i < end; ++i) found[i] = matchOne(pass, indices, seeded, coarseMap, field, map, blocks[i]);
+                for (std::size_t i = begin; i < end; ++i)
+                    found[i] = matchOne(pass, indices, seeded, coarseMap, field, map, blocks[i]);
             });
             for (std::size_t i = 0; i < blocks.size(); ++i) {
                 copyOpen(pass, map, blocks[i], found[i], field);
@@ -102,7 +112,8 @@ private:
         const int n = map.block;
         std::array<std::vector<std::uint8_t>, 3> open;
         for (int axis = 0; axis < 3; ++axis) {
-            const int covered = l[axis] == 0 ? 0 : map.origin(axis, l[axis] - 1) + n - map.origin(axis, l[axis]);
+            const int covered =
+                l[axis] == 0 ? 0 : map.origin(axis, l[axis] - 1) + n - map.origin(axis, l[axis]);
             open[std::size_t(axis)].assign(std::size_t(n), 0);
             for (int i = std::max(covered, 0); i < n; ++i) open[std::size_t(axis)][std::size_t(i)] = 1;
         }
@@ -110,7 +121,9 @@ private:
         std::size_t s = 0;
         for (int i = 0; i < n; ++i)
             for (int j = 0; j < n; ++j)
-                for (int k = 0; k < n; ++k) samples[s++] = open[0][std::size_t(i)] & open[1][std::size_t(j)] & open[2][std::size_t(k)];
+                for (int k = 0; k < n; ++k)
+                    samples[s++] =
+                        open[0][std::size_t(i)] & open[1][std::size_t(j)] & open[2][std::size_t(k)];
         return samples;
     }
 
@@ -127,9 +140,14 @@ private:
                 low = at - drift;
                 high = at + drift;
             } else if (mOptions.border[std::size_t(axis)] == Border::Object) {
-                if (at < n) low = high = at;
-                else if (at + n > target - n) low = high = length - (target - at);
-                else { low = n; high = length - 2 * n; }
+                if (at < n)
+                    low = high = at;
+                else if (at + n > target - n)
+                    low = high = length - (target - at);
+                else {
+                    low = n;
+                    high = length - 2 * n;
+                }
             }
             box.min[axis] = std::max(box.min[axis], low);
             box.max[axis] = std::min(box.max[axis], high);
@@ -137,8 +155,9 @@ private:
         return box;
     }
 
-    Found matchOne(const Pass& pass, const std::vector<BlockIndex>& indices, bool seeded, const PatchMap* coarseMap,
-                   const BrickField& field, const PatchMap& map, const Index3& l) const {
+    Found matchOne(const Pass& pass, const std::vector<BlockIndex>& indices, bool seeded,
+                   const PatchMap* coarseMap, const BrickField& field, const PatchMap& map,
+                   const Index3& l) const {
         const int n = pass.block;
         const Index3 origin{map.origin(0, l.x), map.origin(1, l.y), map.origin(2, l.z)};
         std::vector<float> samples(std::size_t(n) * std::size_t(n) * std::size_t(n));
@@ -167,8 +186,11 @@ private:
             best.exemplar = std::int32_t(e);
             any = true;
         }
-        if (!any) throw Error(ErrorCode::Unusable, "no eligible source for the block at " + std::to_string(origin.x) + "," + std::to_string(origin.y) + "," +
-                                  std::to_string(origin.z) + "; widen --exemplar-mask or raise --drift");
+        if (!any)
+            throw Error(ErrorCode::Unusable, "no eligible source for the block at " +
+                                                 std::to_string(origin.x) + "," + std::to_string(origin.y) +
+                                                 "," + std::to_string(origin.z) +
+                                                 "; widen --exemplar-mask or raise --drift");
         return best;
     }
 
@@ -179,7 +201,8 @@ private:
             BlockQuery drawn = query;
             for (int axis = 0; axis < 3; ++axis) {
                 const std::uint32_t room = std::uint32_t(query.candidates.size()[axis]);
-                drawn.candidates.min[axis] = drawn.candidates.max[axis] = query.candidates.min[axis] + int(random.below(room));
+                drawn.candidates.min[axis] = drawn.candidates.max[axis] =
+                    query.candidates.min[axis] + int(random.below(room));
             }
             const std::vector<BlockMatch> matches = index.match(drawn, 1, &found.counts);
             if (matches.empty()) continue;  // outside the mask
@@ -193,7 +216,8 @@ private:
     }
 
     // Where the neighbours' sources and the coarser pass would go on.
-    void addHints(const PatchMap& map, const PatchMap* coarseMap, const Index3& l, std::int32_t exemplar, std::vector<Index3>& hints) const {
+    void addHints(const PatchMap& map, const PatchMap* coarseMap, const Index3& l, std::int32_t exemplar,
+                  std::vector<Index3>& hints) const {
         for (int axis = 0; axis < 3; ++axis) {
             if (l[axis] == 0) continue;
             Index3 before = l;
@@ -214,11 +238,14 @@ private:
         const std::size_t b = coarseMap->index(strongest);
         if (coarseMap->exemplar[b] != exemplar) return;
         Index3 hint;
-        for (int axis = 0; axis < 3; ++axis) hint[axis] = origin[axis] + 2 * (coarseMap->source[b][axis] - coarseMap->origin(axis, strongest[axis]));
+        for (int axis = 0; axis < 3; ++axis)
+            hint[axis] =
+                origin[axis] + 2 * (coarseMap->source[b][axis] - coarseMap->origin(axis, strongest[axis]));
         hints.push_back(hint);
     }
 
-    void copyOpen(const Pass& pass, PatchMap& map, const Index3& l, const Found& found, BrickField& field) const {
+    void copyOpen(const Pass& pass, PatchMap& map, const Index3& l, const Found& found,
+                  BrickField& field) const {
         const int n = pass.block;
         const std::size_t at = map.index(l);
         map.source[at] = found.match.position;
@@ -226,7 +253,8 @@ private:
         std::vector<float> samples(std::size_t(n) * std::size_t(n) * std::size_t(n));
         pass.exemplars[std::size_t(found.exemplar)]->readBox(found.match.position, {n, n, n}, samples.data());
         const std::vector<std::uint8_t> open = openSamples(map, l);
-        field.writeBox({map.origin(0, l.x), map.origin(1, l.y), map.origin(2, l.z)}, {n, n, n}, samples.data(), open.data());
+        field.writeBox({map.origin(0, l.x), map.origin(1, l.y), map.origin(2, l.z)}, {n, n, n},
+                       samples.data(), open.data());
     }
 
     const BlockSynthesisOptions& mOptions;
@@ -235,7 +263,8 @@ private:
 };
 
 // The passes, finest first; coarser ones end where a block would fall under four samples.
-std::vector<Pass> planPasses(const Fields& exemplars, const BlockSynthesisOptions& options, int block, const RunContext& ctx) {
+std::vector<Pass> planPasses(const Fields& exemplars, const BlockSynthesisOptions& options, int block,
+                             const RunContext& ctx) {
     std::vector<Pass> passes{{exemplars, options.size, block, 1}};
     const int levels = options.levels > 0 ? options.levels : 3;
     while (int(passes.size()) < levels) {
@@ -248,49 +277,72 @@ std::vector<Pass> planPasses(const Fields& exemplars, const BlockSynthesisOption
             coarse.block = std::min(coarse.block, longestBlock(size, coarse.target, options.border) / 2 * 2);
         }
         if (coarse.block < 4) break;
-        for (const auto& exemplar : passes.back().exemplars) coarse.exemplars.push_back(std::make_shared<BrickField>(halved(*exemplar, ctx)));
+        for (const auto& exemplar : passes.back().exemplars)
+            coarse.exemplars.push_back(std::make_shared<BrickField>(halved(*exemplar, ctx)));
         passes.push_back(coarse);
     }
     if (options.levels > int(passes.size()))
-        message(ctx, MessageLevel::Note, "--levels " + std::to_string(options.levels) + ": the exemplar is large enough for " + std::to_string(passes.size()) + "; using those");
+        message(ctx, MessageLevel::Note,
+                "--levels " + std::to_string(options.levels) + ": the exemplar is large enough for " +
+                    std::to_string(passes.size()) + "; using those");
     return passes;
 }
 
 void validate(const Fields& exemplars, const BlockSynthesisOptions& options) {
     if (exemplars.empty()) throw Error(ErrorCode::InvalidOption, "synthesis needs at least one exemplar");
-    const std::string size = std::to_string(options.size.x) + "," + std::to_string(options.size.y) + "," + std::to_string(options.size.z);
-    for (int axis = 0; axis < 3; ++axis) requireOption(options.size[axis] >= 4 && options.size[axis] <= 1 << 20, "size", size, "from 4 to 1048576 voxels along each axis");
-    requireOption(options.block == 0 || (options.block >= 4 && options.block <= 256), "block", std::to_string(options.block), "a whole number from 4 to 256");
-    requireOption(options.levels >= 0 && options.levels <= 8, "levels", std::to_string(options.levels), "a whole number from 1 to 8");
+    const std::string size = std::to_string(options.size.x) + "," + std::to_string(options.size.y) + "," +
+                             std::to_string(options.size.z);
+    for (int axis = 0; axis < 3; ++axis)
+        requireOption(options.size[axis] >= 4 && options.size[axis] <= 1 << 20, "size", size,
+                      "from 4 to 1048576 voxels along each axis");
+    requireOption(options.block == 0 || (options.block >= 4 && options.block <= 256), "block",
+                  std::to_string(options.block), "a whole number from 4 to 256");
+    requireOption(options.levels >= 0 && options.levels <= 8, "levels", std::to_string(options.levels),
+                  "a whole number from 1 to 8");
     requireOption(options.drift >= 0, "drift", std::to_string(options.drift), "at least 0 voxels");
     for (const auto& exemplar : exemplars)
         for (int axis = 0; axis < 3; ++axis) {
             const int length = exemplar->box().size()[axis];
             if (options.size[axis] < length)
-                throw Error(ErrorCode::InvalidOption, "--size " + size + ": smaller than the exemplar's domain along " + char('x' + axis) + " (" + std::to_string(length) + " voxels); give at least that, or 1x");
+                throw Error(ErrorCode::InvalidOption, "--size " + size +
+                                                          ": smaller than the exemplar's domain along " +
+                                                          char('x' + axis) + " (" + std::to_string(length) +
+                                                          " voxels); give at least that, or 1x");
             if (options.block > length)
-                throw Error(ErrorCode::Unusable, "--block " + std::to_string(options.block) + ": larger than the exemplar, which has " + std::to_string(length) + " voxels along " + char('x' + axis));
-            if (options.block > 0 && options.size[axis] != length && options.border[std::size_t(axis)] == Border::Object && options.block * 4 > length)
-                throw Error(ErrorCode::Unusable, "--block " + std::to_string(options.block) + ": an object border needs an exemplar of four blocks along " + char('x' + axis) + ", it has " + std::to_string(length) + " voxels");
+                throw Error(ErrorCode::Unusable, "--block " + std::to_string(options.block) +
+                                                     ": larger than the exemplar, which has " +
+                                                     std::to_string(length) + " voxels along " +
+                                                     char('x' + axis));
+            if (options.block > 0 && options.size[axis] != length &&
+                options.border[std::size_t(axis)] == Border::Object && options.block * 4 > length)
+                throw Error(ErrorCode::Unusable,
+                            "--block " + std::to_string(options.block) +
+                                ": an object border needs an exemplar of four blocks along " +
+                                char('x' + axis) + ", it has " + std::to_string(length) + " voxels");
         }
 }
 
-} // namespace
+}  // namespace
 
 int deriveBlock(const Index3& exemplar, const BlockSynthesisOptions& options) {
     const int block = std::min(16, longestBlock(exemplar, options.size, options.border) / 2 * 2);
     if (block < 4)
-        throw Error(ErrorCode::Unusable, "the exemplar's domain of " + std::to_string(exemplar.x) + " x " + std::to_string(exemplar.y) + " x " + std::to_string(exemplar.z) +
-                        " voxels is too small for blocks of 4; use smaller voxels or a larger --exemplar-box");
+        throw Error(
+            ErrorCode::Unusable,
+            "the exemplar's domain of " + std::to_string(exemplar.x) + " x " + std::to_string(exemplar.y) +
+                " x " + std::to_string(exemplar.z) +
+                " voxels is too small for blocks of 4; use smaller voxels or a larger --exemplar-box");
     return block;
 }
 
-BlockSynthesisResult synthesizeBlocks(const Fields& exemplars, const BlockSynthesisOptions& options, const RunContext& ctx) {
+BlockSynthesisResult synthesizeBlocks(const Fields& exemplars, const BlockSynthesisOptions& options,
+                                      const RunContext& ctx) {
     validate(exemplars, options);
     int block = options.block;
     if (block == 0) {
         block = 256;
-        for (const auto& exemplar : exemplars) block = std::min(block, deriveBlock(exemplar->box().size(), options));
+        for (const auto& exemplar : exemplars)
+            block = std::min(block, deriveBlock(exemplar->box().size(), options));
     }
     const std::vector<Pass> passes = planPasses(exemplars, options, block, ctx);
     std::vector<BrickField> masks;
@@ -308,8 +360,10 @@ BlockSynthesisResult synthesizeBlocks(const Fields& exemplars, const BlockSynthe
         BrickField field;
         PatchMap map;
         const bool first = p + 1 == passes.size();
-        synthesis.run(passes[p], first ? nullptr : &coarse, first ? nullptr : &coarseMap, masks.empty() ? nullptr : &masks[p], field, map,
-                      "synthesis pass " + std::to_string(passes.size() - p) + " of " + std::to_string(passes.size() - last));
+        synthesis.run(passes[p], first ? nullptr : &coarse, first ? nullptr : &coarseMap,
+                      masks.empty() ? nullptr : &masks[p], field, map,
+                      "synthesis pass " + std::to_string(passes.size() - p) + " of " +
+                          std::to_string(passes.size() - last));
         coarse = std::move(field);
         coarseMap = std::move(map);
     }
@@ -321,4 +375,4 @@ BlockSynthesisResult synthesizeBlocks(const Fields& exemplars, const BlockSynthe
     return result;
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

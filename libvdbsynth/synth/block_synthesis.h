@@ -13,16 +13,20 @@ namespace vdbsynth {
 /// What happens at the two faces of the target along an axis that grows.
 enum class Border {
     Cut,    ///< the texture goes on beyond the face; sources may come from anywhere
-    Object  ///< within a block of a face only sources at the same distance from the same exemplar face, and those nowhere else
+    Object  ///< within a block of a face only sources at the same distance from the same exemplar face, and
+            ///< those nowhere else
 };
 
 struct BlockSynthesisOptions {
-    Index3 size{0, 0, 0};  ///< of the target [voxels]; an axis as long as the exemplar's keeps its source coordinate
-    int block = 0;         ///< N of the last pass [voxels], 4..256; 0: derived, see deriveBlock
-    int levels = 0;        ///< number of passes, 1..8; 0: as many as useful, at most 3
+    Index3 size{
+        0, 0, 0};   ///< of the target [voxels]; an axis as long as the exemplar's keeps its source coordinate
+    int block = 0;  ///< N of the last pass [voxels], 4..256; 0: derived, see deriveBlock
+    int levels = 0;  ///< number of passes, 1..8; 0: as many as useful, at most 3
     std::array<Border, 3> border{Border::Cut, Border::Cut, Border::Cut};
-    int drift = 0;         ///< how far a source may be from its own place along an axis that does not grow [voxels], >= 0
-    bool draft = false;    ///< leave out the last pass: the map of the one before, at full resolution; several times faster
+    int drift =
+        0;  ///< how far a source may be from its own place along an axis that does not grow [voxels], >= 0
+    bool draft = false;  ///< leave out the last pass: the map of the one before, at full resolution; several
+                         ///< times faster
     const BrickField* mask = nullptr;  ///< sources only from blocks where it is 1; box of the first exemplar
 };
 
@@ -39,25 +43,27 @@ struct BlockSynthesisResult {
     BlockSynthesisStats stats;
 };
 
-/// The block for the last pass where none is given: 16, less where half of the exemplar's shortest growing axis
-/// (a quarter at an object border, all of it where the axis does not grow) is shorter; even.
+/// The block for the last pass where none is given: 16, less where half of the exemplar's shortest growing
+/// axis (a quarter at an object border, all of it where the axis does not grow) is shorter; even.
 /// @throw Error Unusable (the exemplar is too small for blocks of 4)
 int deriveBlock(const Index3& exemplar, const BlockSynthesisOptions& options);
 
-/// More of the same geometry [lagae2004, section 5], coarse to fine. Each pass works on the exemplar averaged down
-/// and walks over overlapping blocks in an order in which seven of eight octants are done; the best block of the
-/// exemplar for what is known fills the rest. The first pass knows only what is done (a mask, where the paper pads with
-/// random samples); later ones also the upsampled result of the pass before. Blocks on one diagonal plane of the
-/// lattice do not depend on each other and are matched in parallel; the result is that of the raster order.
-/// Where the paper copies octants and smooths the mesh, the result here is the vote of all blocks that cover
-/// a sample (grid/patch_map.h): neighbours were matched to agree where they overlap, so their weighted mean has no seams.
-/// The first block of the first pass is drawn from ctx.seed; equal costs go to the lowest position.
+/// More of the same geometry [lagae2004, section 5], coarse to fine. Each pass works on the exemplar averaged
+/// down and walks over overlapping blocks in an order in which seven of eight octants are done; the best
+/// block of the exemplar for what is known fills the rest. The first pass knows only what is done (a mask,
+/// where the paper pads with random samples); later ones also the upsampled result of the pass before. Blocks
+/// on one diagonal plane of the lattice do not depend on each other and are matched in parallel; the result
+/// is that of the raster order. Where the paper copies octants and smooths the mesh, the result here is the
+/// vote of all blocks that cover a sample (grid/patch_map.h): neighbours were matched to agree where they
+/// overlap, so their weighted mean has no seams. The first block of the first pass is drawn from ctx.seed;
+/// equal costs go to the lowest position.
 ///
 /// @param exemplars  fields of distances [voxels], clamped, boxes begin at 0, at least one
-/// @throw Error InvalidOption (an option out of range), Unusable (block larger than an exemplar, object border on an exemplar under four blocks), Memory, Cancelled
+/// @throw Error InvalidOption (an option out of range), Unusable (block larger than an exemplar, object
+/// border on an exemplar under four blocks), Memory, Cancelled
 /// @par Cost    O(target blocks * one search); memory: target and exemplar bricks, search index
 /// @par Repeats same bits for (inputs, options, ctx.seed), any number of threads
 BlockSynthesisResult synthesizeBlocks(const std::vector<std::shared_ptr<const BrickField>>& exemplars,
                                       const BlockSynthesisOptions& options, const RunContext& ctx = {});
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -16,8 +16,8 @@ using Leaf = openvdb::FloatTree::LeafNodeType;
 constexpr int kSide = BrickField::kSide;
 
 // The value of a whole leaf-aligned region if it is one tile, by a probe of its leaf.
-void readLeafRegion(const openvdb::FloatGrid::ConstAccessor& accessor, const Index3& corner, int nx, int ny, int nz,
-                    float* out, int strideX, int strideY) {
+void readLeafRegion(const openvdb::FloatGrid::ConstAccessor& accessor, const Index3& corner, int nx, int ny,
+                    int nz, float* out, int strideX, int strideY) {
     const openvdb::Coord origin = toCoord(corner);
     const Leaf* leaf = accessor.probeConstLeaf(origin);
     const float tile = leaf ? 0.f : accessor.getValue(origin);
@@ -34,30 +34,32 @@ void readLeafRegion(const openvdb::FloatGrid::ConstAccessor& accessor, const Ind
         }
 }
 
-} // namespace
+}  // namespace
 
 BrickField gatherBricks(const openvdb::FloatGrid& grid, const IndexBox& box, float scale, float limit,
                         const RunContext& ctx) {
     const Index3 shift = box.min;
-    return BrickField::generate(IndexBox::fromSize(box.size()), ctx, [&](const IndexBox& brick, float* samples) {
-        const openvdb::FloatGrid::ConstAccessor accessor = grid.getConstAccessor();
-        const Index3 corner = brick.min + shift;
-        for (int x = 0; x < kSide;) {
-            const int nx = std::min(kSide - x, kSide - ((corner.x + x) & 7));
-            for (int y = 0; y < kSide;) {
-                const int ny = std::min(kSide - y, kSide - ((corner.y + y) & 7));
-                for (int z = 0; z < kSide;) {
-                    const int nz = std::min(kSide - z, kSide - ((corner.z + z) & 7));
-                    readLeafRegion(accessor, corner + Index3{x, y, z}, nx, ny, nz,
-                                   samples + (x * kSide + y) * kSide + z, kSide * kSide, kSide);
-                    z += nz;
+    return BrickField::generate(
+        IndexBox::fromSize(box.size()), ctx, [&](const IndexBox& brick, float* samples) {
+            const openvdb::FloatGrid::ConstAccessor accessor = grid.getConstAccessor();
+            const Index3 corner = brick.min + shift;
+            for (int x = 0; x < kSide;) {
+                const int nx = std::min(kSide - x, kSide - ((corner.x + x) & 7));
+                for (int y = 0; y < kSide;) {
+                    const int ny = std::min(kSide - y, kSide - ((corner.y + y) & 7));
+                    for (int z = 0; z < kSide;) {
+                        const int nz = std::min(kSide - z, kSide - ((corner.z + z) & 7));
+                        readLeafRegion(accessor, corner + Index3{x, y, z}, nx, ny, nz,
+                                       samples + (x * kSide + y) * kSide + z, kSide * kSide, kSide);
+                        z += nz;
+                    }
+                    y += ny;
                 }
-                y += ny;
+                x += nx;
             }
-            x += nx;
-        }
-        for (int i = 0; i < BrickField::kSamples; ++i) samples[i] = std::clamp(samples[i] * scale, -limit, limit);
-    });
+            for (int i = 0; i < BrickField::kSamples; ++i)
+                samples[i] = std::clamp(samples[i] * scale, -limit, limit);
+        });
 }
 
 FloatGridPtr scatterBricks(const BrickField& field, const Index3& corner, float scale, float limit,
@@ -73,11 +75,13 @@ FloatGridPtr scatterBricks(const BrickField& field, const Index3& corner, float 
     parallelFor(ctx, count, 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Index3 leafIndex{int(i / std::size_t(leaves.z) / std::size_t(leaves.y)),
-                                   int(i / std::size_t(leaves.z) % std::size_t(leaves.y)), int(i % std::size_t(leaves.z))};
+                                   int(i / std::size_t(leaves.z) % std::size_t(leaves.y)),
+                                   int(i % std::size_t(leaves.z))};
             const Index3 origin = first + leafIndex * 8;
             const IndexBox region = IndexBox::cube(origin - corner, 8);
             float constant = 0;
-            if (box.contains(region) && field.constantIn(region, constant) && !(constant > -limit && constant < limit)) {
+            if (box.contains(region) && field.constantIn(region, constant) &&
+                !(constant > -limit && constant < limit)) {
                 inside[i] = constant < 0;
                 continue;
             }
@@ -88,19 +92,24 @@ FloatGridPtr scatterBricks(const BrickField& field, const Index3& corner, float 
                 const openvdb::Coord at = leaf->offsetToGlobalCoord(n);
                 if (!box.contains(fromCoord(at) - corner)) continue;
                 const float value = std::clamp(values[n], -limit, limit);
-                if (value > -limit && value < limit) leaf->setValueOn(n, value * scale);
-                else leaf->setValueOff(n, value * scale);
+                if (value > -limit && value < limit)
+                    leaf->setValueOn(n, value * scale);
+                else
+                    leaf->setValueOff(n, value * scale);
             }
             made[i] = std::move(leaf);
         }
     });
     for (std::size_t i = 0; i < count; ++i) {
         const Index3 leafIndex{int(i / std::size_t(leaves.z) / std::size_t(leaves.y)),
-                               int(i / std::size_t(leaves.z) % std::size_t(leaves.y)), int(i % std::size_t(leaves.z))};
-        if (made[i]) grid->tree().addLeaf(made[i].release());
-        else if (inside[i]) grid->tree().addTile(1, toCoord(first + leafIndex * 8), -limit * scale, false);
+                               int(i / std::size_t(leaves.z) % std::size_t(leaves.y)),
+                               int(i % std::size_t(leaves.z))};
+        if (made[i])
+            grid->tree().addLeaf(made[i].release());
+        else if (inside[i])
+            grid->tree().addTile(1, toCoord(first + leafIndex * 8), -limit * scale, false);
     }
     return grid;
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -19,4 +19,4 @@ BrickField gatherBricks(const openvdb::FloatGrid& grid, const IndexBox& box, flo
 FloatGridPtr scatterBricks(const BrickField& field, const Index3& corner, float scale, float limit,
                            const RunContext& ctx = {});
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

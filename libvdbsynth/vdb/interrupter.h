@@ -18,4 +18,4 @@ private:
     const RunContext& mContext;
 };
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -24,19 +24,21 @@ std::vector<const Leaf*> leavesOf(const openvdb::FloatGrid& grid) {
     return leaves;
 }
 
-} // namespace
+}  // namespace
 
 std::string boxText(const IndexBox& box) {
     std::ostringstream text;
-    text << box.min.x << ',' << box.min.y << ',' << box.min.z << ',' << box.max.x << ',' << box.max.y << ',' << box.max.z;
+    text << box.min.x << ',' << box.min.y << ',' << box.min.z << ',' << box.max.x << ',' << box.max.y << ','
+         << box.max.z;
     return text.str();
 }
 
 bool parseBox(const std::string& text, IndexBox& box) {
     int used = 0;
     IndexBox parsed;
-    if (std::sscanf(text.c_str(), "%d,%d,%d,%d,%d,%d%n", &parsed.min.x, &parsed.min.y, &parsed.min.z, &parsed.max.x,
-                    &parsed.max.y, &parsed.max.z, &used) != 6) return false;
+    if (std::sscanf(text.c_str(), "%d,%d,%d,%d,%d,%d%n", &parsed.min.x, &parsed.min.y, &parsed.min.z,
+                    &parsed.max.x, &parsed.max.y, &parsed.max.z, &used) != 6)
+        return false;
     constexpr int kLimit = 1 << 28;
     for (int axis = 0; axis < 3; ++axis)
         if (parsed.min[axis] < -kLimit || parsed.max[axis] > kLimit) return false;
@@ -45,7 +47,9 @@ bool parseBox(const std::string& text, IndexBox& box) {
     return true;
 }
 
-double voxelSizeOf(const openvdb::FloatGrid& grid) { return grid.voxelSize()[0]; }
+double voxelSizeOf(const openvdb::FloatGrid& grid) {
+    return grid.voxelSize()[0];
+}
 
 IndexBox solidBox(const openvdb::FloatGrid& grid, const std::string& what) {
     openvdb::CoordBBox box;
@@ -78,9 +82,13 @@ FloatGridPtr inIndexSpace(const openvdb::FloatGrid& grid) {
     return copy;
 }
 
-double halfWidthOf(const openvdb::FloatGrid& grid) { return double(grid.background()) / voxelSizeOf(grid); }
+double halfWidthOf(const openvdb::FloatGrid& grid) {
+    return double(grid.background()) / voxelSizeOf(grid);
+}
 
-std::size_t activeVoxels(const openvdb::FloatGrid& grid) { return grid.activeVoxelCount(); }
+std::size_t activeVoxels(const openvdb::FloatGrid& grid) {
+    return grid.activeVoxelCount();
+}
 
 void stampLevelSet(LevelSet& levelSet) {
     levelSet.grid->setName(kSurfaceName);
@@ -102,7 +110,8 @@ std::string levelSetHash(const openvdb::FloatGrid& grid) {
     const openvdb::Mat4d matrix = grid.transform().baseMap()->getAffineMap()->getMat4();
     for (std::uint64_t& h : hash) h = hash64(matrix.asPointer(), 16 * sizeof(double), h);
     char text[33];
-    std::snprintf(text, sizeof text, "%016llx%016llx", static_cast<unsigned long long>(hash[0]), static_cast<unsigned long long>(hash[1]));
+    std::snprintf(text, sizeof text, "%016llx%016llx", static_cast<unsigned long long>(hash[0]),
+                  static_cast<unsigned long long>(hash[1]));
     return text;
 }
 
@@ -128,8 +137,10 @@ BandQuality measureBand(const openvdb::FloatGrid& grid, const RunContext& ctx) {
                     const float d = (accessor.getValue(high) - accessor.getValue(low)) / (2 * voxel);
                     squared += d * d;
                 }
-                if (complete) errors[i].push_back(std::abs(std::sqrt(squared) - 1));
-                else ++missing[i];
+                if (complete)
+                    errors[i].push_back(std::abs(std::sqrt(squared) - 1));
+                else
+                    ++missing[i];
             }
     });
     BandQuality quality;
@@ -149,4 +160,4 @@ BandQuality measureBand(const openvdb::FloatGrid& grid, const RunContext& ctx) {
     return quality;
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -11,14 +11,15 @@ namespace vdbsynth {
 
 /// A model as every command sees it: a narrow-band level set, negative inside, with a domain.
 struct LevelSet {
-    FloatGridPtr grid;             ///< name "surface", class level set, uniform voxels
-    IndexBox domain;               ///< the box that sizes and statistics mean
-    bool domainRecorded = false;   ///< false: the domain is just the box of the solid
+    FloatGridPtr grid;            ///< name "surface", class level set, uniform voxels
+    IndexBox domain;              ///< the box that sizes and statistics mean
+    bool domainRecorded = false;  ///< false: the domain is just the box of the solid
 };
 
-inline constexpr float kHalfWidth = 3.f;                    ///< [voxels] of every level set we write
+inline constexpr float kHalfWidth = 3.f;  ///< [voxels] of every level set we write
 inline constexpr const char* kSurfaceName = "surface";
-inline constexpr const char* kDomainKey = "vdbsynth:domain"; ///< metadata `i,j,k,I,J,K`, both corners inclusive
+inline constexpr const char* kDomainKey =
+    "vdbsynth:domain";  ///< metadata `i,j,k,I,J,K`, both corners inclusive
 
 std::string boxText(const IndexBox& box);
 /// Parses `i,j,k,I,J,K`. @return false if it is not six whole numbers with every minimum <= its maximum
@@ -43,12 +44,12 @@ std::string levelSetHash(const openvdb::FloatGrid& grid);
 
 /// How true to a distance field a level set is, measured on its active voxels within the band.
 struct BandQuality {
-    double gradientErrorMean = 0;     ///< mean of | |grad| - 1 |, central differences, |value| < 1 voxel
+    double gradientErrorMean = 0;  ///< mean of | |grad| - 1 |, central differences, |value| < 1 voxel
     double gradientErrorP99 = 0;
-    std::size_t measured = 0;         ///< voxels that were measured
-    std::size_t missingNeighbours = 0;///< active voxels next to the zero level with an inactive neighbour
+    std::size_t measured = 0;           ///< voxels that were measured
+    std::size_t missingNeighbours = 0;  ///< active voxels next to the zero level with an inactive neighbour
     bool finite = true;
 };
 BandQuality measureBand(const openvdb::FloatGrid& grid, const RunContext& ctx = {});
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

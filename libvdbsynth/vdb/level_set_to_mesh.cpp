@@ -21,10 +21,11 @@ void toWorld(const openvdb::FloatGrid& grid, Mesh& mesh) {
     for (Quad& q : mesh.quads) std::swap(q[1], q[3]);
 }
 
-} // namespace
+}  // namespace
 
 Mesh levelSetToMesh(const openvdb::FloatGrid& grid, const MeshingOptions& options, const RunContext& ctx) {
-    requireOption(options.adaptivity >= 0 && options.adaptivity <= 1, "adaptivity", std::to_string(options.adaptivity), "from 0 to 1");
+    requireOption(options.adaptivity >= 0 && options.adaptivity <= 1, "adaptivity",
+                  std::to_string(options.adaptivity), "from 0 to 1");
     Stage stage(ctx, "level set to mesh", 2);
     Mesh mesh = zeroLevelInIndexSpace(grid, options.adaptivity, ctx);
     if (mesh.faceCount() == 0) throw Error(ErrorCode::EmptyInput, "the level set has no surface to mesh");
@@ -35,4 +36,4 @@ Mesh levelSetToMesh(const openvdb::FloatGrid& grid, const MeshingOptions& option
     return mesh;
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

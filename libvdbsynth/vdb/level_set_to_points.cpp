@@ -37,12 +37,16 @@ std::vector<Candidate> throwCandidates(const Mesh& mesh, double spacing, std::ui
         for (; count > 0; count -= 1) {
             if (count < 1 && random.uniform() >= count) break;
             double s = random.uniform(), t = random.uniform();
-            if (s + t > 1) { s = 1 - s; t = 1 - t; }
+            if (s + t > 1) {
+                s = 1 - s;
+                t = 1 - t;
+            }
             const std::uint64_t high = random.bits();
             candidates.push_back({high << 32 | random.bits(), a + u * float(s) + v * float(t)});
         }
     }
-    std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.order < b.order; });
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.order < b.order; });
     return candidates;
 }
 
@@ -65,23 +69,28 @@ public:
 
 private:
     Index3 cellOf(const Vec3f& p) const {
-        return {int(std::floor(double(p.x) / mSpacing)), int(std::floor(double(p.y) / mSpacing)), int(std::floor(double(p.z) / mSpacing))};
+        return {int(std::floor(double(p.x) / mSpacing)), int(std::floor(double(p.y) / mSpacing)),
+                int(std::floor(double(p.z) / mSpacing))};
     }
     // 21 bits an axis; cells that share a key are only tested needlessly.
     static std::uint64_t key(const Index3& c) {
-        return (std::uint64_t(c.x & 0x1FFFFF) << 42) | (std::uint64_t(c.y & 0x1FFFFF) << 21) | std::uint64_t(c.z & 0x1FFFFF);
+        return (std::uint64_t(c.x & 0x1FFFFF) << 42) | (std::uint64_t(c.y & 0x1FFFFF) << 21) |
+               std::uint64_t(c.z & 0x1FFFFF);
     }
     double mSpacing;
     std::unordered_map<std::uint64_t, std::vector<Vec3f>> mCells;
 };
 
-} // namespace
+}  // namespace
 
-PointCloud levelSetToPoints(const openvdb::FloatGrid& grid, const PointOptions& options, const RunContext& ctx) {
-    requireOption(options.spacing >= 0.25 && options.spacing <= 100, "spacing", std::to_string(options.spacing), "from 0.25 to 100 voxels");
+PointCloud levelSetToPoints(const openvdb::FloatGrid& grid, const PointOptions& options,
+                            const RunContext& ctx) {
+    requireOption(options.spacing >= 0.25 && options.spacing <= 100, "spacing",
+                  std::to_string(options.spacing), "from 0.25 to 100 voxels");
     Stage stage(ctx, "level set to points", 3);
     const Mesh mesh = zeroLevelInIndexSpace(grid, 0, ctx);
-    if (mesh.faceCount() == 0) throw Error(ErrorCode::EmptyInput, "the level set has no surface to put points on");
+    if (mesh.faceCount() == 0)
+        throw Error(ErrorCode::EmptyInput, "the level set has no surface to put points on");
     stage.advance();
     const std::vector<Candidate> candidates = throwCandidates(mesh, options.spacing, ctx.seed);
     stage.advance();
@@ -100,4 +109,4 @@ PointCloud levelSetToPoints(const openvdb::FloatGrid& grid, const PointOptions& 
     return cloud;
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -19,27 +19,32 @@ openvdb::BoolGrid::Ptr emptyMask(const openvdb::math::Transform::Ptr& transform)
 }
 
 template <typename Grid>
-bool gatherActive(const openvdb::GridBase& base, const IndexBox& box, BrickField& field, const RunContext& ctx) {
+bool gatherActive(const openvdb::GridBase& base, const IndexBox& box, BrickField& field,
+                  const RunContext& ctx) {
     if (!base.isType<Grid>()) return false;
     const Grid& grid = static_cast<const Grid&>(base);
-    field = BrickField::generate(IndexBox::fromSize(box.size()), ctx, [&](const IndexBox& brick, float* samples) {
-        const auto accessor = grid.getConstAccessor();
-        for (int x = brick.min.x; x <= brick.max.x; ++x)
-            for (int y = brick.min.y; y <= brick.max.y; ++y)
-                for (int z = brick.min.z; z <= brick.max.z; ++z)
-                    *samples++ = accessor.isValueOn(toCoord(Index3{x, y, z} + box.min)) ? 1.f : 0.f;
-    });
+    field =
+        BrickField::generate(IndexBox::fromSize(box.size()), ctx, [&](const IndexBox& brick, float* samples) {
+            const auto accessor = grid.getConstAccessor();
+            for (int x = brick.min.x; x <= brick.max.x; ++x)
+                for (int y = brick.min.y; y <= brick.max.y; ++y)
+                    for (int z = brick.min.z; z <= brick.max.z; ++z)
+                        *samples++ = accessor.isValueOn(toCoord(Index3{x, y, z} + box.min)) ? 1.f : 0.f;
+        });
     return true;
 }
 
-} // namespace
+}  // namespace
 
 BrickField gatherMask(const openvdb::GridBase& grid, const IndexBox& box, const RunContext& ctx) {
     BrickField field;
-    if (gatherActive<openvdb::BoolGrid>(grid, box, field, ctx) || gatherActive<openvdb::FloatGrid>(grid, box, field, ctx) ||
-        gatherActive<openvdb::MaskGrid>(grid, box, field, ctx) || gatherActive<openvdb::Int32Grid>(grid, box, field, ctx))
+    if (gatherActive<openvdb::BoolGrid>(grid, box, field, ctx) ||
+        gatherActive<openvdb::FloatGrid>(grid, box, field, ctx) ||
+        gatherActive<openvdb::MaskGrid>(grid, box, field, ctx) ||
+        gatherActive<openvdb::Int32Grid>(grid, box, field, ctx))
         return field;
-    throw Error(ErrorCode::BadData, "mask \"" + grid.getName() + "\": a grid of " + grid.valueType() + " cannot be a mask; bool, mask, int32 or float can");
+    throw Error(ErrorCode::BadData, "mask \"" + grid.getName() + "\": a grid of " + grid.valueType() +
+                                        " cannot be a mask; bool, mask, int32 or float can");
 }
 
 GridPtr boxMask(const IndexBox& box, double voxelSize) {
@@ -57,7 +62,8 @@ GridPtr ballMask(const Vec3d& centre, double radius, double voxelSize) {
     for (int x = int(std::ceil(c.x - r)); x <= int(std::floor(c.x + r)); ++x)
         for (int y = int(std::ceil(c.y - r)); y <= int(std::floor(c.y + r)); ++y)
             for (int z = int(std::ceil(c.z - r)); z <= int(std::floor(c.z + r)); ++z)
-                if (length(Vec3d{double(x), double(y), double(z)} - c) <= r) accessor.setValueOn(openvdb::Coord(x, y, z), true);
+                if (length(Vec3d{double(x), double(y), double(z)} - c) <= r)
+                    accessor.setValueOn(openvdb::Coord(x, y, z), true);
     return mask;
 }
 
@@ -65,21 +71,26 @@ GridPtr insideMask(const openvdb::FloatGrid& levelSet) {
     auto mask = emptyMask(levelSet.transform().copy());
     for (auto it = levelSet.cbeginValueAll(); it; ++it) {
         if (*it >= 0) continue;
-        if (it.isVoxelValue()) mask->tree().setValueOn(it.getCoord(), true);
-        else mask->fill(it.getBoundingBox(), true, true);
+        if (it.isVoxelValue())
+            mask->tree().setValueOn(it.getCoord(), true);
+        else
+            mask->fill(it.getBoundingBox(), true, true);
     }
     return mask;
 }
 
 GridPtr rangeMask(const openvdb::FloatGrid& grid, double minimum, double maximum) {
-    requireOption(minimum <= maximum, "range", std::to_string(minimum) + "," + std::to_string(maximum), "a smaller and a larger value");
+    requireOption(minimum <= maximum, "range", std::to_string(minimum) + "," + std::to_string(maximum),
+                  "a smaller and a larger value");
     auto mask = emptyMask(grid.transform().copy());
     for (auto it = grid.cbeginValueOn(); it; ++it) {
         if (double(*it) < minimum || double(*it) > maximum) continue;
-        if (it.isVoxelValue()) mask->tree().setValueOn(it.getCoord(), true);
-        else mask->fill(it.getBoundingBox(), true, true);
+        if (it.isVoxelValue())
+            mask->tree().setValueOn(it.getCoord(), true);
+        else
+            mask->fill(it.getBoundingBox(), true, true);
     }
     return mask;
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

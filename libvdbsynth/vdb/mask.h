@@ -22,4 +22,4 @@ GridPtr insideMask(const openvdb::FloatGrid& levelSet);
 /// Active voxels of a float grid with minimum <= value <= maximum.
 GridPtr rangeMask(const openvdb::FloatGrid& grid, double minimum, double maximum);
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -21,7 +21,8 @@ FloatGridPtr meshToLevelSet(const Mesh& mesh, double voxelSize, double halfWidth
                             const RunContext& ctx = {});
 
 struct MeshingOptions {
-    double adaptivity = 0.0;  ///< 0..1: how far flat regions may be merged; 0 keeps about two triangles a surface voxel
+    double adaptivity =
+        0.0;  ///< 0..1: how far flat regions may be merged; 0 keeps about two triangles a surface voxel
 };
 
 /// The zero level as a closed manifold mesh with outward faces: OpenVDB's dual contouring, then two Newton
@@ -29,7 +30,8 @@ struct MeshingOptions {
 /// inside curved surfaces), then sheets that touch are separated (geometry/mesh.h).
 /// @throw Error InvalidOption (--adaptivity), EmptyInput (no zero level), Cancelled
 /// @par Repeats same bits for any number of threads
-Mesh levelSetToMesh(const openvdb::FloatGrid& grid, const MeshingOptions& options = {}, const RunContext& ctx = {});
+Mesh levelSetToMesh(const openvdb::FloatGrid& grid, const MeshingOptions& options = {},
+                    const RunContext& ctx = {});
 
 struct PointOptions {
     double spacing = 1.0;  ///< [voxels], least distance between two points, 0.25..100
@@ -39,6 +41,7 @@ struct PointOptions {
 /// with the outward unit normals of the field.
 /// @throw Error InvalidOption, EmptyInput, Cancelled
 /// @par Repeats same bits for any number of threads
-PointCloud levelSetToPoints(const openvdb::FloatGrid& grid, const PointOptions& options = {}, const RunContext& ctx = {});
+PointCloud levelSetToPoints(const openvdb::FloatGrid& grid, const PointOptions& options = {},
+                            const RunContext& ctx = {});
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -16,36 +16,58 @@ namespace {
 // around it: bytes seen on bunny, dragon and nefertiti at 100 to 1000 voxels.
 constexpr double kBytesPerBandVoxel = 24;
 
-void checkEnclosed(const openvdb::FloatGrid& grid, const Mesh& mesh, double voxelSize, const std::string& name) {
+void checkEnclosed(const openvdb::FloatGrid& grid, const Mesh& mesh, double voxelSize,
+                   const std::string& name) {
     const double enclosed = solidVoxels(grid) * voxelSize * voxelSize * voxelSize;
     double volume = 0, area = 0;
-    const Vec3d origin = cast<double>(mesh.points[mesh.triangles.empty() ? mesh.quads[0][0] : mesh.triangles[0][0]]);
+    const Vec3d origin =
+        cast<double>(mesh.points[mesh.triangles.empty() ? mesh.quads[0][0] : mesh.triangles[0][0]]);
     const auto add = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
-        const Vec3d a = cast<double>(mesh.points[i]) - origin, b = cast<double>(mesh.points[j]) - origin, c = cast<double>(mesh.points[k]) - origin;
+        const Vec3d a = cast<double>(mesh.points[i]) - origin, b = cast<double>(mesh.points[j]) - origin,
+                    c = cast<double>(mesh.points[k]) - origin;
         volume += dot(a, cross(b, c)) / 6;
         area += length(cross(b - a, c - a)) / 2;
     };
     for (const Triangle& t : mesh.triangles) add(t[0], t[1], t[2]);
-    for (const Quad& q : mesh.quads) { add(q[0], q[1], q[2]); add(q[0], q[2], q[3]); }
+    for (const Quad& q : mesh.quads) {
+        add(q[0], q[1], q[2]);
+        add(q[0], q[2], q[3]);
+    }
     // A solid thinner than a voxel everywhere may honestly vanish; that is its own message.
     if (enclosed > 0 && enclosed >= 0.5 * std::abs(volume)) return;
     const MeshSummary summary = summarize(mesh);
-    if (summary.openEdges == 0 && enclosed == 0 && std::abs(volume) > 0 && std::abs(volume) / area < voxelSize)
-        throw Error(ErrorCode::Unusable, name + ": thinner than a voxel everywhere; use a smaller --voxel-size or a larger --resolution");
-    throw Error(ErrorCode::Unusable, name + ": " + std::to_string(summary.openEdges) + " open edges; close the mesh (the level set encloses " +
-                    std::to_string(int(std::abs(volume) > 0 ? 100 * enclosed / std::abs(volume) : 0)) + " % of the volume that the faces suggest)");
+    if (summary.openEdges == 0 && enclosed == 0 && std::abs(volume) > 0 &&
+        std::abs(volume) / area < voxelSize)
+        throw Error(
+            ErrorCode::Unusable,
+            name + ": thinner than a voxel everywhere; use a smaller --voxel-size or a larger --resolution");
+    throw Error(ErrorCode::Unusable,
+                name + ": " + std::to_string(summary.openEdges) +
+                    " open edges; close the mesh (the level set encloses " +
+                    std::to_string(int(std::abs(volume) > 0 ? 100 * enclosed / std::abs(volume) : 0)) +
+                    " % of the volume that the faces suggest)");
 }
 
-} // namespace
+}  // namespace
 
-FloatGridPtr meshToLevelSet(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name, const RunContext& ctx) {
-    requireOption(std::isfinite(voxelSize) && voxelSize > 0, "voxel-size", std::to_string(voxelSize), "above 0");
-    requireOption(halfWidth >= 1.5 && halfWidth <= 1000, "half-width", std::to_string(halfWidth), "from 1.5 to 1000 voxels");
+FloatGridPtr meshToLevelSet(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
+                            const RunContext& ctx) {
+    requireOption(std::isfinite(voxelSize) && voxelSize > 0, "voxel-size", std::to_string(voxelSize),
+                  "above 0");
+    requireOption(halfWidth >= 1.5 && halfWidth <= 1000, "half-width", std::to_string(halfWidth),
+                  "from 1.5 to 1000 voxels");
     double area = 0;
-    for (const Triangle& t : mesh.triangles) area += double(length(cross(mesh.points[t[1]] - mesh.points[t[0]], mesh.points[t[2]] - mesh.points[t[0]]))) / 2;
-    for (const Quad& q : mesh.quads) area += double(length(cross(mesh.points[q[2]] - mesh.points[q[0]], mesh.points[q[3]] - mesh.points[q[1]]))) / 2;
+    for (const Triangle& t : mesh.triangles)
+        area += double(length(
+                    cross(mesh.points[t[1]] - mesh.points[t[0]], mesh.points[t[2]] - mesh.points[t[0]]))) /
+                2;
+    for (const Quad& q : mesh.quads)
+        area += double(length(
+                    cross(mesh.points[q[2]] - mesh.points[q[0]], mesh.points[q[3]] - mesh.points[q[1]]))) /
+                2;
     requireMemory(ctx, area / (voxelSize * voxelSize) * 2 * halfWidth * kBytesPerBandVoxel,
-                  name + ": a level set at voxel size " + std::to_string(voxelSize), "use a larger --voxel-size or a smaller --resolution");
+                  name + ": a level set at voxel size " + std::to_string(voxelSize),
+                  "use a larger --voxel-size or a smaller --resolution");
     Stage stage(ctx, "mesh to level set", 1);
     std::vector<openvdb::Vec3s> points;
     points.reserve(mesh.points.size());
@@ -61,7 +83,8 @@ FloatGridPtr meshToLevelSet(const Mesh& mesh, double voxelSize, double halfWidth
         Interrupter interrupter(ctx);
         const auto transform = openvdb::math::Transform::createLinearTransform(voxelSize);
         openvdb::FloatGrid::Ptr grid = openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(
-            static_cast<openvdb::util::NullInterrupter&>(interrupter), *transform, points, triangles, quads, float(halfWidth));
+            static_cast<openvdb::util::NullInterrupter&>(interrupter), *transform, points, triangles, quads,
+            float(halfWidth));
         throwIfCancelled(ctx);
         checkEnclosed(*grid, mesh, voxelSize, name);
         stage.advance();
@@ -69,4 +92,4 @@ FloatGridPtr meshToLevelSet(const Mesh& mesh, double voxelSize, double halfWidth
     });
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

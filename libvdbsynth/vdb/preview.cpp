@@ -37,8 +37,10 @@ Camera aimAt(const Vec3d& low, const Vec3d& high, const PreviewOptions& options)
     const double aspect = double(options.width) / options.height;
     double distance = 0;
     for (int c = 0; c < 8; ++c) {
-        const Vec3d corner = Vec3d{c & 1 ? high.x : low.x, c & 2 ? high.y : low.y, c & 4 ? high.z : low.z} - centre;
-        const double side = std::max(std::abs(dot(corner, camera.right)) / aspect, std::abs(dot(corner, camera.up)));
+        const Vec3d corner =
+            Vec3d{c & 1 ? high.x : low.x, c & 2 ? high.y : low.y, c & 4 ? high.z : low.z} - centre;
+        const double side =
+            std::max(std::abs(dot(corner, camera.right)) / aspect, std::abs(dot(corner, camera.up)));
         distance = std::max(distance, 1.04 * side / camera.tangent - dot(corner, camera.forward));
     }
     camera.eye = centre + back * distance;
@@ -47,7 +49,7 @@ Camera aimAt(const Vec3d& low, const Vec3d& high, const PreviewOptions& options)
 
 struct Hit {
     bool surface = false;
-    Vec3d colour;       // linear light
+    Vec3d colour;  // linear light
     Vec3d normal;
     double depth = 0;
 };
@@ -55,7 +57,9 @@ struct Hit {
 class Scene {
 public:
     Scene(const openvdb::FloatGrid& grid, const Camera& camera, double voxel)
-        : mIntersector(grid), mCamera(camera), mVoxel(voxel),
+        : mIntersector(grid),
+          mCamera(camera),
+          mVoxel(voxel),
           mLight(normalized(camera.right * -0.55 + camera.up * 0.75 - camera.forward * 0.6)) {}
 
     Hit trace(double u, double v) const {
@@ -101,7 +105,9 @@ private:
 };
 
 // Gamma 2 for 2.2: a square root has the same bits on every processor.
-std::uint8_t encode(double light) { return std::uint8_t(std::clamp(std::sqrt(std::max(0.0, light)), 0.0, 1.0) * 255 + 0.5); }
+std::uint8_t encode(double light) {
+    return std::uint8_t(std::clamp(std::sqrt(std::max(0.0, light)), 0.0, 1.0) * 255 + 0.5);
+}
 
 bool isEdge(const std::vector<Hit>& hits, int width, int height, int x, int y) {
     const Hit& here = hits[std::size_t(y) * std::size_t(width) + std::size_t(x)];
@@ -112,26 +118,33 @@ bool isEdge(const std::vector<Hit>& hits, int width, int height, int x, int y) {
             const Hit& there = hits[std::size_t(ny) * std::size_t(width) + std::size_t(nx)];
             if (here.surface != there.surface) return true;
             if (!here.surface) continue;
-            if (dot(here.normal, there.normal) < 0.9 || std::abs(here.depth - there.depth) > 0.02 * here.depth) return true;
+            if (dot(here.normal, there.normal) < 0.9 ||
+                std::abs(here.depth - there.depth) > 0.02 * here.depth)
+                return true;
             const Vec3d change = here.colour - there.colour;
             if (dot(change, change) > 0.01) return true;
         }
     return false;
 }
 
-} // namespace
+}  // namespace
 
 Picture renderPreview(const openvdb::FloatGrid& grid, const PreviewOptions& options, const RunContext& ctx) {
     const std::string size = std::to_string(options.width) + "x" + std::to_string(options.height);
-    requireOption(options.width >= 16 && options.height >= 16 && options.width <= 8192 && options.height <= 8192, "size", size, "from 16x16 to 8192x8192");
+    requireOption(
+        options.width >= 16 && options.height >= 16 && options.width <= 8192 && options.height <= 8192,
+        "size", size, "from 16x16 to 8192x8192");
     requireOption(length(options.view) > 0, "view", "0,0,0", "a direction");
-    requireOption(options.samples >= 1 && options.samples <= 64, "samples", std::to_string(options.samples), "from 1 to 64");
+    requireOption(options.samples >= 1 && options.samples <= 64, "samples", std::to_string(options.samples),
+                  "from 1 to 64");
     const IndexBox box = solidBox(grid, "the model");
     const ThreadLimit limit(ctx);
     // The corners of the solid's box in world space; a rotated grid gives the box around them.
     Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
     for (int c = 0; c < 8; ++c) {
-        const Vec3d corner{c & 1 ? box.max.x + 0.5 : box.min.x - 0.5, c & 2 ? box.max.y + 0.5 : box.min.y - 0.5, c & 4 ? box.max.z + 0.5 : box.min.z - 0.5};
+        const Vec3d corner{c & 1 ? box.max.x + 0.5 : box.min.x - 0.5,
+                           c & 2 ? box.max.y + 0.5 : box.min.y - 0.5,
+                           c & 4 ? box.max.z + 0.5 : box.min.z - 0.5};
         const Vec3d world = fromVec(grid.indexToWorld(toVec(corner)));
         for (int axis = 0; axis < 3; ++axis) {
             low[axis] = std::min(low[axis], world[axis]);
@@ -174,7 +187,8 @@ Picture renderPreview(const openvdb::FloatGrid& grid, const PreviewOptions& opti
                         }
                         colour = colour * (1.0 / options.samples);
                     }
-                    for (int c = 0; c < 3; ++c) picture.pixels[pixel * 3 + std::size_t(c)] = encode(colour[c]);
+                    for (int c = 0; c < 3; ++c)
+                        picture.pixels[pixel * 3 + std::size_t(c)] = encode(colour[c]);
                 }
         });
     });
@@ -182,22 +196,30 @@ Picture renderPreview(const openvdb::FloatGrid& grid, const PreviewOptions& opti
     return picture;
 }
 
-Picture renderSlice(const openvdb::FloatGrid& grid, const IndexBox& box, const SliceOptions& options, const RunContext& ctx) {
+Picture renderSlice(const openvdb::FloatGrid& grid, const IndexBox& box, const SliceOptions& options,
+                    const RunContext& ctx) {
     const std::string size = std::to_string(options.width) + "x" + std::to_string(options.height);
-    requireOption(options.width >= 16 && options.height >= 16 && options.width <= 8192 && options.height <= 8192, "size", size, "from 16x16 to 8192x8192");
-    requireOption(options.axis >= 0 && options.axis <= 2 && options.fraction >= 0 && options.fraction <= 1, "slice", std::to_string(options.fraction), "an axis and a fraction, for example z=0.5");
+    requireOption(
+        options.width >= 16 && options.height >= 16 && options.width <= 8192 && options.height <= 8192,
+        "size", size, "from 16x16 to 8192x8192");
+    requireOption(options.axis >= 0 && options.axis <= 2 && options.fraction >= 0 && options.fraction <= 1,
+                  "slice", std::to_string(options.fraction), "an axis and a fraction, for example z=0.5");
     const int axis = options.axis, across = axis == 0 ? 1 : 0, up = axis == 2 ? 1 : 2;
     const double slice = box.min[axis] + options.fraction * (box.max[axis] - box.min[axis]);
-    const double scale = std::max(double(box.size()[across]) / options.width, double(box.size()[up]) / options.height) * 1.04;  // voxels a pixel
+    const double scale =
+        std::max(double(box.size()[across]) / options.width, double(box.size()[up]) / options.height) *
+        1.04;  // voxels a pixel
     const double voxel = voxelSizeOf(grid);
-    Picture picture{options.width, options.height, std::vector<std::uint8_t>(std::size_t(options.width) * std::size_t(options.height) * 3)};
+    Picture picture{options.width, options.height,
+                    std::vector<std::uint8_t>(std::size_t(options.width) * std::size_t(options.height) * 3)};
     parallelFor(ctx, std::size_t(options.height), 8, [&](std::size_t begin, std::size_t end) {
         const auto accessor = grid.getConstAccessor();
         for (int y = int(begin); y < int(end); ++y)
             for (int x = 0; x < options.width; ++x) {
                 Vec3d p;
                 p[axis] = slice;
-                p[across] = 0.5 * (box.min[across] + box.max[across]) + (x + 0.5 - 0.5 * options.width) * scale;
+                p[across] =
+                    0.5 * (box.min[across] + box.max[across]) + (x + 0.5 - 0.5 * options.width) * scale;
                 p[up] = 0.5 * (box.min[up] + box.max[up]) - (y + 0.5 - 0.5 * options.height) * scale;
                 const double value = double(openvdb::tools::BoxSampler::sample(accessor, toVec(p))) / voxel;
                 const double line = std::abs(value - std::floor(value + 0.5)) / std::max(scale, 1e-9);
@@ -212,4 +234,4 @@ Picture renderSlice(const openvdb::FloatGrid& grid, const IndexBox& box, const S
     return picture;
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

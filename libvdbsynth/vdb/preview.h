@@ -7,15 +7,17 @@ namespace vdbsynth {
 
 struct PreviewOptions {
     int width = 800, height = 600;  ///< [pixels], 16..8192
-    Vec3d view{1.0, -1.6, 0.9};     ///< direction from the model to the camera, not zero; z is up unless it is along z
-    int samples = 8;                ///< rays a pixel at edges (elsewhere one), 1..64
+    Vec3d view{1.0, -1.6,
+               0.9};  ///< direction from the model to the camera, not zero; z is up unless it is along z
+    int samples = 4;  ///< rays a pixel at edges (elsewhere one), 1..64
 };
 
 /// A shaded picture of a level set: perspective camera that sees the whole solid, one key light with
 /// shadow, sky and ground light, edges refined with `samples` rays a pixel.
 /// @throw Error InvalidOption, EmptyInput, Cancelled
 /// @par Repeats same bits for any number of threads
-Picture renderPreview(const openvdb::FloatGrid& grid, const PreviewOptions& options = {}, const RunContext& ctx = {});
+Picture renderPreview(const openvdb::FloatGrid& grid, const PreviewOptions& options = {},
+                      const RunContext& ctx = {});
 
 struct SliceOptions {
     int width = 800, height = 600;  ///< [pixels], 16..8192
@@ -26,6 +28,7 @@ struct SliceOptions {
 /// A slice through a level set over `box`: inside warm, outside cool, contour lines every voxel of
 /// distance, the zero level black.
 /// @throw Error InvalidOption
-Picture renderSlice(const openvdb::FloatGrid& grid, const IndexBox& box, const SliceOptions& options = {}, const RunContext& ctx = {});
+Picture renderSlice(const openvdb::FloatGrid& grid, const IndexBox& box, const SliceOptions& options = {},
+                    const RunContext& ctx = {});
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

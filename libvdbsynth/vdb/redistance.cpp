@@ -34,14 +34,16 @@ openvdb::FloatGrid::Ptr unsignedDistance(const Mesh& mesh, float halfWidth, cons
     openvdb::FloatGrid::Ptr grid = behindWall(ErrorCode::Unusable, "distance to the surface", [&] {
         Interrupter interrupter(ctx);
         return openvdb::tools::meshToUnsignedDistanceField<openvdb::FloatGrid>(
-            static_cast<openvdb::util::NullInterrupter&>(interrupter), *transform, points, triangles, quads, halfWidth);
+            static_cast<openvdb::util::NullInterrupter&>(interrupter), *transform, points, triangles, quads,
+            halfWidth);
     });
     throwIfCancelled(ctx);
     return grid;
 }
 
 // Gives every stored voxel the sign of `field`, scales to world units and fills the rest.
-void applySigns(openvdb::FloatGrid& distance, const openvdb::FloatGrid& field, float voxelSize, float halfWidth, const RunContext& ctx) {
+void applySigns(openvdb::FloatGrid& distance, const openvdb::FloatGrid& field, float voxelSize,
+                float halfWidth, const RunContext& ctx) {
     std::vector<Leaf*> leaves;
     distance.tree().getNodes(leaves);
     parallelFor(ctx, leaves.size(), 32, [&](std::size_t begin, std::size_t end) {
@@ -59,14 +61,17 @@ void applySigns(openvdb::FloatGrid& distance, const openvdb::FloatGrid& field, f
 bool onCap(const Vec3f& p, const IndexBox& domain, const CutFaces& cut, int face) {
     const int axis = face / 2;
     if (!cut[std::size_t(face)]) return false;
-    return face % 2 == 0 ? p[axis] < float(domain.min[axis]) - 0.25f : p[axis] > float(domain.max[axis]) + 0.25f;
+    return face % 2 == 0 ? p[axis] < float(domain.min[axis]) - 0.25f
+                         : p[axis] > float(domain.max[axis]) + 0.25f;
 }
 
 template <typename Face>
 void dropCaps(std::vector<Face>& faces, const Mesh& mesh, const IndexBox& domain, const CutFaces& cut) {
     const auto isCap = [&](const Face& f) {
         for (int face = 0; face < 6; ++face)
-            if (std::all_of(f.begin(), f.end(), [&](std::uint32_t v) { return onCap(mesh.points[v], domain, cut, face); })) return true;
+            if (std::all_of(f.begin(), f.end(),
+                            [&](std::uint32_t v) { return onCap(mesh.points[v], domain, cut, face); }))
+                return true;
         return false;
     };
     faces.erase(std::remove_if(faces.begin(), faces.end(), isCap), faces.end());
@@ -89,9 +94,10 @@ void dropFar(std::vector<Face>& faces, const Mesh& mesh, const IndexBox& domain,
     faces.erase(std::remove_if(faces.begin(), faces.end(), isFar), faces.end());
 }
 
-} // namespace
+}  // namespace
 
-FloatGridPtr rebuildLevelSet(const openvdb::FloatGrid& field, float halfWidth, const std::string& what, const RunContext& ctx) {
+FloatGridPtr rebuildLevelSet(const openvdb::FloatGrid& field, float halfWidth, const std::string& what,
+                             const RunContext& ctx) {
     Stage stage(ctx, "rebuilding the narrow band", 2);
     const Mesh mesh = zeroLevelInIndexSpace(field, 0, ctx);
     if (mesh.faceCount() == 0) throw Error(ErrorCode::EmptyInput, what + " has no surface");
@@ -105,7 +111,8 @@ FloatGridPtr rebuildLevelSet(const openvdb::FloatGrid& field, float halfWidth, c
     return grid;
 }
 
-BrickField widenBand(const openvdb::FloatGrid& levelSet, const IndexBox& domain, const CutFaces& cut, float halfWidth, const RunContext& ctx) {
+BrickField widenBand(const openvdb::FloatGrid& levelSet, const IndexBox& domain, const CutFaces& cut,
+                     float halfWidth, const RunContext& ctx) {
     Mesh mesh = zeroLevelInIndexSpace(levelSet, 0, ctx);
     dropCaps(mesh.triangles, mesh, domain, cut);
     dropCaps(mesh.quads, mesh, domain, cut);
@@ -125,7 +132,8 @@ BrickField widenBand(const openvdb::FloatGrid& levelSet, const IndexBox& domain,
     });
 }
 
-BrickField closeField(const BrickField& field, const IndexBox& domain, const CutFaces& cut, float limit, const RunContext& ctx) {
+BrickField closeField(const BrickField& field, const IndexBox& domain, const CutFaces& cut, float limit,
+                      const RunContext& ctx) {
     constexpr int kMargin = 2;
     return BrickField::generate(domain.expanded(kMargin), ctx, [&](const IndexBox& brick, float* samples) {
         field.readBox(brick.min, {BrickField::kSide, BrickField::kSide, BrickField::kSide}, samples);
@@ -135,7 +143,8 @@ BrickField closeField(const BrickField& field, const IndexBox& domain, const Cut
                     const Index3 p{x, y, z};
                     float value = std::clamp(*samples, -limit, limit);
                     for (int axis = 0; axis < 3; ++axis) {
-                        const float low = float(domain.min[axis] - p[axis]) - 0.5f, high = float(p[axis] - domain.max[axis]) - 0.5f;
+                        const float low = float(domain.min[axis] - p[axis]) - 0.5f,
+                                    high = float(p[axis] - domain.max[axis]) - 0.5f;
                         if (cut[std::size_t(2 * axis)] || low > 0) value = std::max(value, low);
                         if (cut[std::size_t(2 * axis + 1)] || high > 0) value = std::max(value, high);
                     }
@@ -144,8 +153,9 @@ BrickField closeField(const BrickField& field, const IndexBox& domain, const Cut
     });
 }
 
-FloatGridPtr closeAndRebuild(const BrickField& field, const Index3& corner, const CutFaces& cut, float halfWidth,
-                             const openvdb::FloatGrid& like, const std::string& what, const RunContext& ctx) {
+FloatGridPtr closeAndRebuild(const BrickField& field, const Index3& corner, const CutFaces& cut,
+                             float halfWidth, const openvdb::FloatGrid& like, const std::string& what,
+                             const RunContext& ctx) {
     const float limit = std::max(halfWidth, 3.f);
     const BrickField closed = closeField(field, field.box(), cut, limit, ctx);
     FloatGridPtr grid = scatterBricks(closed, corner, float(voxelSizeOf(like)), limit, ctx);
@@ -153,4 +163,4 @@ FloatGridPtr closeAndRebuild(const BrickField& field, const Index3& corner, cons
     return rebuildLevelSet(*grid, halfWidth, what, ctx);
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

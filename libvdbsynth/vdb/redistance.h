@@ -14,7 +14,8 @@ namespace vdbsynth {
 /// @param halfWidth  [voxels], at least 1.5
 /// @throw Error EmptyInput "WHAT has no surface ..."
 /// @par Repeats same bits for any number of threads
-FloatGridPtr rebuildLevelSet(const openvdb::FloatGrid& field, float halfWidth, const std::string& what, const RunContext& ctx = {});
+FloatGridPtr rebuildLevelSet(const openvdb::FloatGrid& field, float halfWidth, const std::string& what,
+                             const RunContext& ctx = {});
 
 /// Which faces of a domain cut through the solid: low and high face of x, y, z.
 using CutFaces = std::array<bool, 6>;
@@ -24,19 +25,21 @@ using CutFaces = std::array<bool, 6>;
 /// face of the domain (the caps of a clipped model) do not count: a block beside a cut sees what the
 /// material there looked like before the cut.
 /// @par Repeats same bits for any number of threads
-BrickField widenBand(const openvdb::FloatGrid& levelSet, const IndexBox& domain, const CutFaces& cut, float halfWidth,
-                     const RunContext& ctx = {});
+BrickField widenBand(const openvdb::FloatGrid& levelSet, const IndexBox& domain, const CutFaces& cut,
+                     float halfWidth, const RunContext& ctx = {});
 
 inline constexpr CutFaces kAllCut{true, true, true, true, true, true};
 
 /// A field [voxels] closed by caps half a voxel outside the cut faces of `domain`, over the domain grown by
 /// two voxels. Beyond the field's own box its nearest samples go on.
-BrickField closeField(const BrickField& field, const IndexBox& domain, const CutFaces& cut, float limit, const RunContext& ctx = {});
+BrickField closeField(const BrickField& field, const IndexBox& domain, const CutFaces& cut, float limit,
+                      const RunContext& ctx = {});
 
 /// A field [voxels] as a level set, its voxel 0 at `corner`, its voxel size and rotation those of
 /// `like`, closed by caps half a voxel outside the cut faces, then rebuilt to `halfWidth`.
 /// @throw Error EmptyInput (no surface)
-FloatGridPtr closeAndRebuild(const BrickField& field, const Index3& corner, const CutFaces& cut, float halfWidth,
-                             const openvdb::FloatGrid& like, const std::string& what, const RunContext& ctx = {});
+FloatGridPtr closeAndRebuild(const BrickField& field, const Index3& corner, const CutFaces& cut,
+                             float halfWidth, const openvdb::FloatGrid& like, const std::string& what,
+                             const RunContext& ctx = {});
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -37,4 +37,4 @@ private:
     openvdb::FloatGrid::ConstAccessor mAccessor;
 };
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

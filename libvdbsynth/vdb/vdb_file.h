@@ -27,7 +27,8 @@ struct GridSummary {
 std::vector<GridSummary> summarizeVdb(const std::string& path, const RunContext& ctx = {});
 
 struct VdbReadOptions {
-    std::string gridName;       ///< which grid; empty: "surface", else the only level set, else the first level set, else a fog volume with `iso`
+    std::string gridName;  ///< which grid; empty: "surface", else the only level set, else the first level
+                           ///< set, else a fog volume with `iso`
     std::optional<double> iso;  ///< a fog volume is solid where its value is above this
 };
 
@@ -35,10 +36,11 @@ struct VdbReadOptions {
 /// an anisotropic or sheared transform resampled to its smallest voxel), fog volumes by `iso`.
 /// A recorded domain is kept; else the domain is the box of the solid.
 /// @throw Error  Io (missing, a directory, not readable), BadData (not a VDB file, truncated, corrupt, NaN,
-///               no usable grid, frustum transform), InvalidOption (no grid of that name), Unusable (a fog volume
-///               without iso), EmptyInput (no surface)
+///               no usable grid, frustum transform), InvalidOption (no grid of that name), Unusable (a fog
+///               volume without iso), EmptyInput (no surface)
 /// @par Repeats  same bits for any number of threads
-LevelSet readVdbModel(const std::string& path, const VdbReadOptions& options = {}, const RunContext& ctx = {});
+LevelSet readVdbModel(const std::string& path, const VdbReadOptions& options = {},
+                      const RunContext& ctx = {});
 
 /// Reads a float or double grid as it is: the named one, or the only one. @throw Error as readVdbModel
 FloatGridPtr readVdbFloatGrid(const std::string& path, const std::string& name, const RunContext& ctx = {});
@@ -55,4 +57,4 @@ using VdbMetadata = std::vector<std::pair<std::string, std::string>>;
 /// @throw Error Io (cannot be created, disk full)
 void writeVdb(const std::string& path, const std::vector<GridPtr>& grids, const VdbMetadata& metadata);
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

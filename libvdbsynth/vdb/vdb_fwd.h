@@ -13,22 +13,28 @@ OPENVDB_USE_VERSION_NAMESPACE
 namespace OPENVDB_VERSION_NAME {
 
 class GridBase;
-template <typename TreeType> class Grid;
+template <typename TreeType>
+class Grid;
 
 namespace tree {
-template <typename RootNodeType> class Tree;
-template <typename ChildNodeType> class RootNode;
-template <typename ChildNodeType, std::uint32_t Log2Dim> class InternalNode;
-template <typename ValueType, std::uint32_t Log2Dim> class LeafNode;
-} // namespace tree
+template <typename RootNodeType>
+class Tree;
+template <typename ChildNodeType>
+class RootNode;
+template <typename ChildNodeType, std::uint32_t Log2Dim>
+class InternalNode;
+template <typename ValueType, std::uint32_t Log2Dim>
+class LeafNode;
+}  // namespace tree
 
-using FloatTree = tree::Tree<tree::RootNode<tree::InternalNode<tree::InternalNode<tree::LeafNode<float, 3>, 4>, 5>>>;
+using FloatTree =
+    tree::Tree<tree::RootNode<tree::InternalNode<tree::InternalNode<tree::LeafNode<float, 3>, 4>, 5>>>;
 using FloatGrid = Grid<FloatTree>;
 
-} // namespace OPENVDB_VERSION_NAME
-} // namespace openvdb
+}  // namespace OPENVDB_VERSION_NAME
+}  // namespace openvdb
 
 namespace vdbsynth {
 using FloatGridPtr = std::shared_ptr<openvdb::FloatGrid>;
 using GridPtr = std::shared_ptr<openvdb::GridBase>;
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -34,7 +34,8 @@ std::unique_ptr<openvdb::io::File> openVdb(const std::string& path) {
     if (probe.gcount() == 0) throw Error(ErrorCode::BadData, path + ": the file is empty");
     if (std::string(magic, 4) != " BDV") throw Error(ErrorCode::BadData, path + ": not a VDB file");
     auto file = std::make_unique<openvdb::io::File>(path);
-    behindWall(ErrorCode::BadData, path + ": truncated or corrupt", [&] { file->open(/* delayLoad= */ false); });
+    behindWall(ErrorCode::BadData, path + ": truncated or corrupt",
+               [&] { file->open(/* delayLoad= */ false); });
     return file;
 }
 
@@ -48,7 +49,10 @@ ValueRange rangeOf(const openvdb::FloatGrid& grid) {
     range.finite = std::isfinite(grid.background());
     bool first = true;
     const auto add = [&](float value) {
-        if (!std::isfinite(value)) { range.finite = false; return; }
+        if (!std::isfinite(value)) {
+            range.finite = false;
+            return;
+        }
         range.minimum = first ? double(value) : std::min(range.minimum, double(value));
         range.maximum = first ? double(value) : std::max(range.maximum, double(value));
         first = false;
@@ -58,14 +62,18 @@ ValueRange rangeOf(const openvdb::FloatGrid& grid) {
     for (const Leaf* leaf : leaves)
         for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
             const float value = leaf->getValue(n);
-            if (leaf->isValueOn(n)) add(value);
-            else if (!std::isfinite(value)) range.finite = false;
+            if (leaf->isValueOn(n))
+                add(value);
+            else if (!std::isfinite(value))
+                range.finite = false;
         }
     auto tile = grid.tree().cbeginValueAll();
     tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
     for (; tile; ++tile) {
-        if (tile.isValueOn()) add(*tile);
-        else if (!std::isfinite(*tile)) range.finite = false;
+        if (tile.isValueOn())
+            add(*tile);
+        else if (!std::isfinite(*tile))
+            range.finite = false;
     }
     return range;
 }
@@ -86,39 +94,54 @@ bool isLevelSet(const openvdb::FloatGrid& grid) {
     return range.minimum < 0 && range.maximum > 0;
 }
 
-openvdb::FloatGrid::Ptr pickGrid(const std::string& path, const std::vector<GridPtr>& grids, const VdbReadOptions& options) {
+openvdb::FloatGrid::Ptr pickGrid(const std::string& path, const std::vector<GridPtr>& grids,
+                                 const VdbReadOptions& options) {
     std::string names;
     openvdb::FloatGrid::Ptr levelSet, fog;
     for (const GridPtr& grid : grids) {
         names += (names.empty() ? "" : ", ") + grid->getName() + " (" + grid->valueType() + ")";
         const openvdb::FloatGrid::Ptr floats = asFloat(grid);
         if (!options.gridName.empty() && grid->getName() == options.gridName) {
-            if (!floats) throw Error(ErrorCode::BadData, path + ": grid \"" + options.gridName + "\" holds " + grid->valueType() + "; a float or double grid is needed");
+            if (!floats)
+                throw Error(ErrorCode::BadData, path + ": grid \"" + options.gridName + "\" holds " +
+                                                    grid->valueType() + "; a float or double grid is needed");
             return floats;
         }
         if (!floats) continue;
         if (isLevelSet(*floats)) {
-            if (!levelSet || (floats->getName() == kSurfaceName && levelSet->getName() != kSurfaceName)) levelSet = floats;
+            if (!levelSet || (floats->getName() == kSurfaceName && levelSet->getName() != kSurfaceName))
+                levelSet = floats;
         } else if (!fog) {
             fog = floats;
         }
     }
     if (!options.gridName.empty())
-        throw Error(ErrorCode::InvalidOption, "--grid " + options.gridName + ": not in " + path + ", which has " + (names.empty() ? "no grids" : names));
+        throw Error(ErrorCode::InvalidOption, "--grid " + options.gridName + ": not in " + path +
+                                                  ", which has " + (names.empty() ? "no grids" : names));
     if (options.iso && fog) return fog;
     if (levelSet) return levelSet;
     if (fog) return fog;
-    throw Error(ErrorCode::BadData, path + ": no usable grid; a float or double grid is needed, it has " + (names.empty() ? "no grids" : names));
+    throw Error(ErrorCode::BadData, path + ": no usable grid; a float or double grid is needed, it has " +
+                                        (names.empty() ? "no grids" : names));
 }
 
 void refuseUnusable(const std::string& path, const openvdb::FloatGrid& grid) {
-    if (!grid.transform().isLinear()) throw Error(ErrorCode::BadData, path + ": grid \"" + grid.getName() + "\" has a frustum transform; resample it to uniform voxels");
-    if (grid.activeVoxelCount() == 0) throw Error(ErrorCode::EmptyInput, path + ": grid \"" + grid.getName() + "\" has no active voxels");
-    if (!rangeOf(grid).finite) throw Error(ErrorCode::BadData, path + ": grid \"" + grid.getName() + "\" holds NaN or infinite values");
+    if (!grid.transform().isLinear())
+        throw Error(ErrorCode::BadData, path + ": grid \"" + grid.getName() +
+                                            "\" has a frustum transform; resample it to uniform voxels");
+    if (grid.activeVoxelCount() == 0)
+        throw Error(ErrorCode::EmptyInput, path + ": grid \"" + grid.getName() + "\" has no active voxels");
+    if (!rangeOf(grid).finite)
+        throw Error(ErrorCode::BadData,
+                    path + ": grid \"" + grid.getName() + "\" holds NaN or infinite values");
     const openvdb::Mat4d m = grid.transform().baseMap()->getAffineMap()->getMat4();
     for (int i = 0; i < 16; ++i)
-        if (!std::isfinite(m.asPointer()[i])) throw Error(ErrorCode::BadData, path + ": grid \"" + grid.getName() + "\" has a transform with NaN or infinite values");
-    if (std::abs(m.det()) < 1e-300) throw Error(ErrorCode::BadData, path + ": grid \"" + grid.getName() + "\" has a transform that flattens space");
+        if (!std::isfinite(m.asPointer()[i]))
+            throw Error(ErrorCode::BadData, path + ": grid \"" + grid.getName() +
+                                                "\" has a transform with NaN or infinite values");
+    if (std::abs(m.det()) < 1e-300)
+        throw Error(ErrorCode::BadData,
+                    path + ": grid \"" + grid.getName() + "\" has a transform that flattens space");
 }
 
 // Rotation, mirror and uniform scale keep distances; anything else does not.
@@ -133,18 +156,22 @@ bool keepsDistances(const openvdb::FloatGrid& grid) {
     return true;
 }
 
-openvdb::FloatGrid::Ptr fogToLevelSet(const std::string& path, const openvdb::FloatGrid& fog, double iso, const RunContext& ctx) {
+openvdb::FloatGrid::Ptr fogToLevelSet(const std::string& path, const openvdb::FloatGrid& fog, double iso,
+                                      const RunContext& ctx) {
     const ValueRange range = rangeOf(fog);
     if (iso <= std::min(range.minimum, double(fog.background())) || iso >= range.maximum)
-        throw Error(ErrorCode::InvalidOption, "--iso " + std::to_string(iso) + ": no surface there; the values of \"" + fog.getName() + "\" in " + path +
-                        " run from " + std::to_string(std::min(range.minimum, double(fog.background()))) + " to " + std::to_string(range.maximum));
+        throw Error(ErrorCode::InvalidOption,
+                    "--iso " + std::to_string(iso) + ": no surface there; the values of \"" + fog.getName() +
+                        "\" in " + path + " run from " +
+                        std::to_string(std::min(range.minimum, double(fog.background()))) + " to " +
+                        std::to_string(range.maximum));
     openvdb::FloatGrid::Ptr field = fog.deepCopy();
     for (auto it = field->beginValueAll(); it; ++it) it.setValue(float(iso) - *it);
     field->tree().root().setBackground(float(iso) - fog.background(), /* updateChildNodes= */ false);
     return rebuildLevelSet(*field, kHalfWidth, path + ": --iso", ctx);
 }
 
-} // namespace
+}  // namespace
 
 std::vector<GridPtr> readVdbGrids(const std::string& path, const RunContext& ctx) {
     Stage stage(ctx, "reading " + path, 1, /* reading= */ true);
@@ -164,7 +191,8 @@ GridPtr readVdbGrid(const std::string& path, const std::string& name, const RunC
         if (grid->getName() == name) return grid;
         names += (names.empty() ? "" : ", ") + grid->getName();
     }
-    throw Error(ErrorCode::BadData, path + ": no grid \"" + name + "\"; it has " + (names.empty() ? "no grids" : names));
+    throw Error(ErrorCode::BadData,
+                path + ": no grid \"" + name + "\"; it has " + (names.empty() ? "no grids" : names));
 }
 
 FloatGridPtr readVdbFloatGrid(const std::string& path, const std::string& name, const RunContext& ctx) {
@@ -211,17 +239,23 @@ LevelSet readVdbModel(const std::string& path, const VdbReadOptions& options, co
     if (const auto meta = grid->getMetadata<openvdb::StringMetadata>(kDomainKey)) domainText = meta->value();
     model.domainRecorded = parseBox(domainText, model.domain);
     if (!domainText.empty() && !model.domainRecorded)
-        message(ctx, MessageLevel::Warning, path + ": metadata " + kDomainKey + " \"" + domainText + "\" is not i,j,k,I,J,K; ignored");
-    const bool asFog = !isLevelSet(*grid) || (options.iso && grid->getGridClass() == openvdb::GRID_FOG_VOLUME);
+        message(ctx, MessageLevel::Warning,
+                path + ": metadata " + kDomainKey + " \"" + domainText + "\" is not i,j,k,I,J,K; ignored");
+    const bool asFog =
+        !isLevelSet(*grid) || (options.iso && grid->getGridClass() == openvdb::GRID_FOG_VOLUME);
     if (asFog && !options.iso)
-        throw Error(ErrorCode::Unusable, path + ": grid \"" + grid->getName() + "\" is a " +
-                        (grid->getGridClass() == openvdb::GRID_FOG_VOLUME ? "fog volume" : "plain scalar grid") +
-                        ", not a level set; say where its surface is with --iso VALUE (its values run from " +
-                        std::to_string(rangeOf(*grid).minimum) + " to " + std::to_string(rangeOf(*grid).maximum) + ")");
+        throw Error(
+            ErrorCode::Unusable,
+            path + ": grid \"" + grid->getName() + "\" is a " +
+                (grid->getGridClass() == openvdb::GRID_FOG_VOLUME ? "fog volume" : "plain scalar grid") +
+                ", not a level set; say where its surface is with --iso VALUE (its values run from " +
+                std::to_string(rangeOf(*grid).minimum) + " to " + std::to_string(rangeOf(*grid).maximum) +
+                ")");
     if (!keepsDistances(*grid)) {
         const Vec3d size = fromVec(grid->voxelSize());
         const double smallest = std::min({size.x, size.y, size.z});
-        message(ctx, MessageLevel::Note, path + ": voxels are not cubes; resampled to " + std::to_string(smallest));
+        message(ctx, MessageLevel::Note,
+                path + ": voxels are not cubes; resampled to " + std::to_string(smallest));
         const auto transform = openvdb::math::Transform::createLinearTransform(smallest);
         if (asFog) {
             for (auto it = grid->beginValueAll(); it; ++it) it.setValue(float(*options.iso) - *it);
@@ -236,11 +270,13 @@ LevelSet readVdbModel(const std::string& path, const VdbReadOptions& options, co
     }
     const double halfWidth = halfWidthOf(*grid);
     if (!(halfWidth >= 1.5))
-        throw Error(ErrorCode::Unusable, path + ": its band of " + std::to_string(halfWidth) + " voxels a side is under 1.5; rebuild the level set with a wider band");
+        throw Error(ErrorCode::Unusable,
+                    path + ": its band of " + std::to_string(halfWidth) +
+                        " voxels a side is under 1.5; rebuild the level set with a wider band");
     model.grid = grid;
     if (!model.domainRecorded) model.domain = solidBox(*grid, path);
     stampLevelSet(model);
     return model;
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -17,7 +17,8 @@ namespace {
 // openvdb::io::File::write does not notice a full disk; writing through our own stream does.
 class StreamArchive : public openvdb::io::Archive {
 public:
-    void writeTo(std::ostream& stream, const openvdb::GridCPtrVec& grids, const openvdb::MetaMap& metadata) const {
+    void writeTo(std::ostream& stream, const openvdb::GridCPtrVec& grids,
+                 const openvdb::MetaMap& metadata) const {
         openvdb::io::Archive::write(stream, grids, /* seekable= */ true, metadata);
     }
 };
@@ -36,12 +37,13 @@ void replaceUuid(const std::string& path) {
     };
     put(std::string(kUuidLength, '0'));
     const std::string hash = fileHash(path);
-    put(hash.substr(0, 8) + '-' + hash.substr(8, 4) + '-' + hash.substr(12, 4) + '-' + hash.substr(16, 4) + '-' + hash.substr(20, 12));
+    put(hash.substr(0, 8) + '-' + hash.substr(8, 4) + '-' + hash.substr(12, 4) + '-' + hash.substr(16, 4) +
+        '-' + hash.substr(20, 12));
     file.close();
     if (!file) throw Error(ErrorCode::Io, path + ": writing failed: " + std::strerror(errno));
 }
 
-} // namespace
+}  // namespace
 
 void writeVdb(const std::string& path, const std::vector<GridPtr>& grids, const VdbMetadata& metadata) {
     openvdb::initialize();
@@ -52,8 +54,9 @@ void writeVdb(const std::string& path, const std::vector<GridPtr>& grids, const 
     if (!file) throw Error(ErrorCode::Io, path + ": cannot be written: " + std::strerror(errno));
     behindWall(ErrorCode::Io, path, [&] { StreamArchive().writeTo(file, constGrids, map); });
     file.close();
-    if (!file) throw Error(ErrorCode::Io, path + ": writing failed: " + std::strerror(errno ? errno : ENOSPC));
+    if (!file)
+        throw Error(ErrorCode::Io, path + ": writing failed: " + std::strerror(errno ? errno : ENOSPC));
     replaceUuid(path);
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -26,4 +26,4 @@ auto behindWall(ErrorCode code, const std::string& what, Work&& work) -> decltyp
     }
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -33,7 +33,7 @@ void projectToZero(const openvdb::FloatGrid& grid, Mesh& mesh, const RunContext&
     });
 }
 
-} // namespace
+}  // namespace
 
 Mesh zeroLevelInIndexSpace(const openvdb::FloatGrid& grid, double adaptivity, const RunContext& ctx) {
     const FloatGridPtr indexGrid = inIndexSpace(grid);
@@ -42,7 +42,8 @@ Mesh zeroLevelInIndexSpace(const openvdb::FloatGrid& grid, double adaptivity, co
     std::vector<openvdb::Vec4I> quads;
     const ThreadLimit limit(ctx);
     behindWall(ErrorCode::Unusable, "level set", [&] {
-        openvdb::tools::volumeToMesh(*indexGrid, points, triangles, quads, 0.0, adaptivity, /* relaxDisorientedTriangles= */ true);
+        openvdb::tools::volumeToMesh(*indexGrid, points, triangles, quads, 0.0, adaptivity,
+                                     /* relaxDisorientedTriangles= */ true);
     });
     throwIfCancelled(ctx);
     Mesh mesh;
@@ -55,4 +56,4 @@ Mesh zeroLevelInIndexSpace(const openvdb::FloatGrid& grid, double adaptivity, co
     return mesh;
 }
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -11,4 +11,4 @@ namespace vdbsynth {
 /// @param adaptivity  0..1, see MeshingOptions
 Mesh zeroLevelInIndexSpace(const openvdb::FloatGrid& grid, double adaptivity, const RunContext& ctx);
 
-} // namespace vdbsynth
+}  // namespace vdbsynth

@@ -16,12 +16,16 @@ void convert(Run& run) {
     const ModelOptions modelOptions = run.modelOptions();
     ModelOutputOptions outputs;
     const std::string as = run.arguments.text("as", "auto");
-    requireOption(as == "auto" || as == "mesh" || as == "points" || as == "levelset", "as", as, "mesh, points or levelset");
+    requireOption(as == "auto" || as == "mesh" || as == "points" || as == "levelset", "as", as,
+                  "mesh, points or levelset");
     outputs.points = as == "points";
     for (const std::string& path : paths) {
         const std::string extension = extensionOf(path);
         const bool fits = as == "auto" || (as == "levelset") == (extension == "vdb");
-        requireOption(fits && (as != "points" || extension == "ply"), "as", as, as == "points" ? "written to .ply" : as == "levelset" ? "written to .vdb" : "written to .obj, .ply, .stl or .off");
+        requireOption(fits && (as != "points" || extension == "ply"), "as", as,
+                      as == "points"     ? "written to .ply"
+                      : as == "levelset" ? "written to .vdb"
+                                         : "written to .obj, .ply, .stl or .off");
     }
     outputs.adaptivity = run.arguments.real("adaptivity", 0, 0, 1);
     outputs.spacing = run.arguments.real("spacing", 1, 0.25, 100);
@@ -33,13 +37,16 @@ void convert(Run& run) {
     run.finish();
 }
 
-} // namespace
+}  // namespace
 
 const Command kConvert{
-    "convert", "convert IN -o OUT [options]", "Turn any model into a level set, mesh or points", "vdb_synth convert bunny.off -o bunny.vdb --resolution 200",
+    "convert",
+    "convert IN -o OUT [options]",
+    "Turn any model into a level set, mesh or points",
+    "vdb_synth convert bunny.off -o bunny.vdb --resolution 200",
     {{"as", "KIND", "mesh, points or levelset; default by the output's extension (.ply: mesh)"},
      {"adaptivity", "A", "0 to 1: merge flat parts of a mesh, default 0"},
      {"spacing", "S", "least distance between points (voxels), default 1"}},
     convert};
 
-} // namespace vdbsynth::cli
+}  // namespace vdbsynth::cli

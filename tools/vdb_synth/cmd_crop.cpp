@@ -13,7 +13,9 @@ void crop(Run& run) {
     run.requireInputs(1, 1);
     const std::vector<std::string> paths = run.outputPaths();
     requireOutputPaths(paths);
-    if (!run.arguments.has("box")) throw Error(ErrorCode::InvalidOption, "--box: missing; give i,j,k,I,J,K in index space, both corners inclusive");
+    if (!run.arguments.has("box"))
+        throw Error(ErrorCode::InvalidOption,
+                    "--box: missing; give i,j,k,I,J,K in index space, both corners inclusive");
     const IndexBox box = run.arguments.box("box");
     requireModelPath(run.arguments.inputs[0]);
     const LevelSet result = cropModel(run.load(run.arguments.inputs[0]), box, run.context);
@@ -24,11 +26,13 @@ void crop(Run& run) {
     run.finish();
 }
 
-} // namespace
+}  // namespace
 
-const Command kCrop{
-    "crop", "crop IN -o OUT --box BOX [options]", "Cut a box out of a model and record it as its domain", "vdb_synth crop grid.vdb -o part.vdb --box 8,8,8,39,39,39",
-    {{"box", "BOX", "i,j,k,I,J,K in index space, both corners inclusive (voxels)"}},
-    crop};
+const Command kCrop{"crop",
+                    "crop IN -o OUT --box BOX [options]",
+                    "Cut a box out of a model and record it as its domain",
+                    "vdb_synth crop grid.vdb -o part.vdb --box 8,8,8,39,39,39",
+                    {{"box", "BOX", "i,j,k,I,J,K in index space, both corners inclusive (voxels)"}},
+                    crop};
 
-} // namespace vdbsynth::cli
+}  // namespace vdbsynth::cli

@@ -12,19 +12,37 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json triple(const Vec3d& v) { return Json::array({v.x, v.y, v.z}); }
-Json triple(const Index3& v) { return Json::array({v.x, v.y, v.z}); }
+Json triple(const Vec3d& v) {
+    return Json::array({v.x, v.y, v.z});
+}
+Json triple(const Index3& v) {
+    return Json::array({v.x, v.y, v.z});
+}
 
 Json meshInfo(const std::string& path, const Run& run) {
     const MeshSummary s = summarize(readMesh(path, run.context));
-    return Json{{"file", path}, {"kind", "mesh"}, {"vertices", s.vertices}, {"faces", s.faces}, {"bounds_min", triple(s.boxMin)}, {"bounds_max", triple(s.boxMax)},
-                {"area", s.area}, {"signed_volume", s.signedVolume}, {"open_edges", s.openEdges}, {"non_manifold_edges", s.nonManifoldEdges},
-                {"misoriented_edges", s.misorientedEdges}, {"closed_manifold", s.closedManifold()}};
+    return Json{{"file", path},
+                {"kind", "mesh"},
+                {"vertices", s.vertices},
+                {"faces", s.faces},
+                {"bounds_min", triple(s.boxMin)},
+                {"bounds_max", triple(s.boxMax)},
+                {"area", s.area},
+                {"signed_volume", s.signedVolume},
+                {"open_edges", s.openEdges},
+                {"non_manifold_edges", s.nonManifoldEdges},
+                {"misoriented_edges", s.misorientedEdges},
+                {"closed_manifold", s.closedManifold()}};
 }
 
 Json gridInfo(const GridSummary& s) {
-    Json grid{{"name", s.name}, {"type", s.type}, {"class", s.gridClass}, {"voxel_size", triple(s.voxelSize)}, {"linear", s.linear},
-              {"half_precision", s.halfPrecision}, {"active_voxels", s.activeVoxels}};
+    Json grid{{"name", s.name},
+              {"type", s.type},
+              {"class", s.gridClass},
+              {"voxel_size", triple(s.voxelSize)},
+              {"linear", s.linear},
+              {"half_precision", s.halfPrecision},
+              {"active_voxels", s.activeVoxels}};
     if (s.activeVoxels > 0) {
         grid["active_min"] = triple(s.activeBox.min);
         grid["active_max"] = triple(s.activeBox.max);
@@ -49,10 +67,17 @@ Json vdbInfo(const std::string& path, Run& run) {
     try {
         const LevelSet model = loadModel(path, run.modelOptions(), run.context);
         const BandQuality quality = measureBand(*model.grid, run.context);
-        info["model"] = Json{{"voxel_size", voxelSizeOf(*model.grid)}, {"half_width", halfWidthOf(*model.grid)}, {"domain", boxText(model.domain)},
-                             {"domain_recorded", model.domainRecorded}, {"solid_voxels", solidVoxels(*model.grid)}, {"active_voxels", activeVoxels(*model.grid)},
-                             {"gradient_error_mean", quality.gradientErrorMean}, {"gradient_error_p99", quality.gradientErrorP99},
-                             {"band_gaps", quality.missingNeighbours}, {"valid", quality.finite && quality.gradientErrorMean < 0.05 && quality.missingNeighbours == 0}};
+        info["model"] = Json{
+            {"voxel_size", voxelSizeOf(*model.grid)},
+            {"half_width", halfWidthOf(*model.grid)},
+            {"domain", boxText(model.domain)},
+            {"domain_recorded", model.domainRecorded},
+            {"solid_voxels", solidVoxels(*model.grid)},
+            {"active_voxels", activeVoxels(*model.grid)},
+            {"gradient_error_mean", quality.gradientErrorMean},
+            {"gradient_error_p99", quality.gradientErrorP99},
+            {"band_gaps", quality.missingNeighbours},
+            {"valid", quality.finite && quality.gradientErrorMean < 0.05 && quality.missingNeighbours == 0}};
     } catch (const Error& error) {
         if (error.code() == ErrorCode::Cancelled) throw;
         info["model"] = nullptr;
@@ -84,17 +109,21 @@ void info(Run& run) {
     requireModelPath(path);
     run.modelOptions();
     const Json json = isMeshPath(path) ? meshInfo(path, run) : vdbInfo(path, run);
-    if (run.arguments.has("json")) printLine(json.dump(2));
-    else printText(json, "");
+    if (run.arguments.has("json"))
+        printLine(json.dump(2));
+    else
+        printText(json, "");
     run.noteInput(path);
     run.finish();
 }
 
-} // namespace
+}  // namespace
 
-const Command kInfo{
-    "info", "info IN [--json]", "Say what is in a file: grids or faces, sizes, ranges, validity", "vdb_synth info grid.vdb",
-    {{"json", "", "print JSON"}},
-    info};
+const Command kInfo{"info",
+                    "info IN [--json]",
+                    "Say what is in a file: grids or faces, sizes, ranges, validity",
+                    "vdb_synth info grid.vdb",
+                    {{"json", "", "print JSON"}},
+                    info};
 
-} // namespace vdbsynth::cli
+}  // namespace vdbsynth::cli

@@ -16,7 +16,8 @@ Index3 wholeTriple(const Arguments& arguments, const std::string& name) {
     Index3 result;
     for (int axis = 0; axis < 3; ++axis) {
         const double value = given[std::size_t(axis)];
-        requireOption(!arguments.has(name) || (value == std::floor(value) && value >= 8 && value <= 4096), name, arguments.text(name), "three whole numbers from 8 to 4096, for example 64,64,32");
+        requireOption(!arguments.has(name) || (value == std::floor(value) && value >= 8 && value <= 4096),
+                      name, arguments.text(name), "three whole numbers from 8 to 4096, for example 64,64,32");
         result[axis] = int(value);
     }
     return result;
@@ -54,12 +55,15 @@ std::string summary() {
     return text;
 }
 
-} // namespace
+}  // namespace
 
 const Command kMake{
-    "make", "make KIND OUT [options]", summary(), "vdb_synth make grid grid.vdb --seed 3",
+    "make",
+    "make KIND OUT [options]",
+    summary(),
+    "vdb_synth make grid grid.vdb --seed 3",
     {{"size", "X,Y,Z", "domain (voxels); default a cube of --resolution, flat kinds less high"},
      {"feature", "F", "typical feature (voxels); a larger domain holds more of them"}},
     make};
 
-} // namespace vdbsynth::cli
+}  // namespace vdbsynth::cli

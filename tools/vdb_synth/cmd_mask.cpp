@@ -12,15 +12,21 @@
 namespace vdbsynth::cli {
 namespace {
 
-double maskVoxelSize(const Arguments& arguments) { return arguments.real("voxel-size", 1, 1e-30, 1e30); }
+double maskVoxelSize(const Arguments& arguments) {
+    return arguments.real("voxel-size", 1, 1e-30, 1e30);
+}
 
 GridPtr makeBall(const Run& run) {
     const Arguments& arguments = run.arguments;
-    if (!arguments.has("center") || !arguments.has("radius")) throw Error(ErrorCode::InvalidOption, "mask ball: give --center X,Y,Z and --radius R (world)");
+    if (!arguments.has("center") || !arguments.has("radius"))
+        throw Error(ErrorCode::InvalidOption, "mask ball: give --center X,Y,Z and --radius R (world)");
     const std::array<double, 3> c = arguments.triple("center", {0, 0, 0});
     const double radius = arguments.real("radius", 0, 1e-30, 1e30), voxel = maskVoxelSize(arguments);
-    for (double value : c) requireOption(std::abs(value) / voxel < 1e8, "center", arguments.text("center"), "within 100 million voxels of the origin");
-    requireMemory(run.context, std::pow(2 * radius / voxel, 3), "--radius " + arguments.text("radius"), "use a smaller radius or a larger --voxel-size");
+    for (double value : c)
+        requireOption(std::abs(value) / voxel < 1e8, "center", arguments.text("center"),
+                      "within 100 million voxels of the origin");
+    requireMemory(run.context, std::pow(2 * radius / voxel, 3), "--radius " + arguments.text("radius"),
+                  "use a smaller radius or a larger --voxel-size");
     return ballMask({c[0], c[1], c[2]}, radius, voxel);
 }
 
@@ -29,9 +35,12 @@ GridPtr makeRange(Run& run) {
     int used = 0;
     const std::string text = run.arguments.text("range");
     if (text.empty()) throw Error(ErrorCode::InvalidOption, "mask range: give --range LOW,HIGH");
-    requireOption(std::sscanf(text.c_str(), "%lf,%lf%n", &low, &high, &used) == 2 && std::size_t(used) == text.size() && low <= high, "range", text, "a smaller and a larger number, for example -1,0.5");
+    requireOption(std::sscanf(text.c_str(), "%lf,%lf%n", &low, &high, &used) == 2 &&
+                      std::size_t(used) == text.size() && low <= high,
+                  "range", text, "a smaller and a larger number, for example -1,0.5");
     const std::string path = run.arguments.inputs[1];
-    if (extensionOf(path) != "vdb") throw Error(ErrorCode::InvalidOption, path + ": mask range reads a .vdb file");
+    if (extensionOf(path) != "vdb")
+        throw Error(ErrorCode::InvalidOption, path + ": mask range reads a .vdb file");
     run.noteInput(path);
     return rangeMask(*readVdbFloatGrid(path, run.arguments.text("grid"), run.context), low, high);
 }
@@ -40,13 +49,17 @@ void mask(Run& run) {
     run.requireInputs(1, 2);
     const std::string kind = run.arguments.inputs[0];
     const std::string path = run.outputPath();
-    if (extensionOf(path) != "vdb") throw Error(ErrorCode::InvalidOption, path + ": unknown extension; masks are .vdb");
+    if (extensionOf(path) != "vdb")
+        throw Error(ErrorCode::InvalidOption, path + ": unknown extension; masks are .vdb");
     const bool wantsModel = kind == "inside" || kind == "range";
-    if (kind != "box" && kind != "ball" && !wantsModel) throw Error(ErrorCode::InvalidOption, "mask " + kind + ": unknown kind; one of box, ball, inside, range");
+    if (kind != "box" && kind != "ball" && !wantsModel)
+        throw Error(ErrorCode::InvalidOption,
+                    "mask " + kind + ": unknown kind; one of box, ball, inside, range");
     run.requireInputs(wantsModel ? 2 : 1, wantsModel ? 2 : 1);
     GridPtr grid;
     if (kind == "box") {
-        if (!run.arguments.has("box")) throw Error(ErrorCode::InvalidOption, "mask box: give --box i,j,k,I,J,K");
+        if (!run.arguments.has("box"))
+            throw Error(ErrorCode::InvalidOption, "mask box: give --box i,j,k,I,J,K");
         grid = boxMask(run.arguments.box("box"), maskVoxelSize(run.arguments));
     } else if (kind == "ball") {
         grid = makeBall(run);
@@ -60,10 +73,12 @@ void mask(Run& run) {
     run.finish();
 }
 
-} // namespace
+}  // namespace
 
 const Command kMask{
-    "mask", "mask box|ball|inside|range [MODEL] -o OUT.vdb [options]", "Make a mask grid: a box, a ball, a model's inside, a grid's range",
+    "mask",
+    "mask box|ball|inside|range [MODEL] -o OUT.vdb [options]",
+    "Make a mask grid: a box, a ball, a model's inside, a grid's range",
     "vdb_synth mask inside bunny.off -o inside.vdb --resolution 64",
     {{"box", "BOX", "for box: i,j,k,I,J,K in index space, both corners inclusive (voxels)"},
      {"center", "X,Y,Z", "for ball: its centre (world)"},
@@ -71,4 +86,4 @@ const Command kMask{
      {"range", "LOW,HIGH", "for range: active voxels of --grid with a value from LOW to HIGH"}},
     mask};
 
-} // namespace vdbsynth::cli
+}  // namespace vdbsynth::cli

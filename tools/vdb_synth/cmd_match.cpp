@@ -15,11 +15,15 @@ void match(Run& run) {
     MatchOptions options;
     options.block = run.arguments.whole("block", 16, 4, 256);
     options.count = run.arguments.whole("count", 1, 1, 100000);
-    if (!run.arguments.has("at")) throw Error(ErrorCode::InvalidOption, "--at: missing; give the minimum corner of the block in the query's index space, for example --at 0,0,0");
+    if (!run.arguments.has("at"))
+        throw Error(ErrorCode::InvalidOption,
+                    "--at: missing; give the minimum corner of the block in the query's index space, for "
+                    "example --at 0,0,0");
     const std::array<double, 3> at = run.arguments.triple("at", {0, 0, 0});
     for (int axis = 0; axis < 3; ++axis) {
         const double value = at[std::size_t(axis)];
-        requireOption(value == std::floor(value) && std::abs(value) < 1e8, "at", run.arguments.text("at"), "three whole numbers, for example 0,0,0");
+        requireOption(value == std::floor(value) && std::abs(value) < 1e8, "at", run.arguments.text("at"),
+                      "three whole numbers, for example 0,0,0");
         options.at[axis] = int(value);
     }
     for (const std::string& path : run.arguments.inputs) requireModelPath(path);
@@ -34,24 +38,33 @@ void match(Run& run) {
     if (run.arguments.has("mask")) {
         const std::string path = run.arguments.text("mask");
         const std::vector<GridPtr> grids = readVdbGrids(path, run.context);
-        if (grids.size() != 1) throw Error(ErrorCode::BadData, path + ": a mask file holds one grid, this one holds " + std::to_string(grids.size()));
+        if (grids.size() != 1)
+            throw Error(ErrorCode::BadData, path + ": a mask file holds one grid, this one holds " +
+                                                std::to_string(grids.size()));
         options.mask = grids.front();
     }
     const MatchResult result = matchModel(exemplar, query, options, run.context);
     nlohmann::json matches = nlohmann::json::array();
     for (const BlockMatch& found : result.matches)
-        matches.push_back({{"position", {found.position.x, found.position.y, found.position.z}}, {"cost", found.cost}, {"rms_voxels", std::sqrt(found.cost)}});
-    const nlohmann::json json{{"block", options.block}, {"at", {options.at.x, options.at.y, options.at.z}}, {"known_samples", result.known}, {"matches", matches}};
+        matches.push_back({{"position", {found.position.x, found.position.y, found.position.z}},
+                           {"cost", found.cost},
+                           {"rms_voxels", std::sqrt(found.cost)}});
+    const nlohmann::json json{{"block", options.block},
+                              {"at", {options.at.x, options.at.y, options.at.z}},
+                              {"known_samples", result.known},
+                              {"matches", matches}};
     printLine(json.dump(2));
     run.count("bounds_computed", result.counts.nodes);
     run.count("exact_costs_computed", result.counts.exact);
     run.finish();
 }
 
-} // namespace
+}  // namespace
 
 const Command kMatch{
-    "match", "match EXEMPLAR QUERY --block N --at I,J,K [options]", "Find the blocks of an exemplar most like one of another model, exactly",
+    "match",
+    "match EXEMPLAR QUERY --block N --at I,J,K [options]",
+    "Find the blocks of an exemplar most like one of another model, exactly",
     "vdb_synth match grid.vdb more.vdb --block 16 --at 40,8,0 --count 3",
     {{"block", "N", "side of the block (voxels), 4 to 256, default 16"},
      {"at", "I,J,K", "minimum corner of the block in QUERY's index space (voxels)"},
@@ -60,4 +73,4 @@ const Command kMatch{
      {"json", "", "print JSON (the default and only form)"}},
     match};
 
-} // namespace vdbsynth::cli
+}  // namespace vdbsynth::cli

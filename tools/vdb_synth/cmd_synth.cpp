@@ -16,23 +16,31 @@ namespace {
 std::vector<std::string> split(const std::string& text) {
     std::vector<std::string> parts;
     std::size_t begin = 0;
-    for (std::size_t comma; (comma = text.find(',', begin)) != std::string::npos; begin = comma + 1) parts.push_back(text.substr(begin, comma - begin));
+    for (std::size_t comma; (comma = text.find(',', begin)) != std::string::npos; begin = comma + 1)
+        parts.push_back(text.substr(begin, comma - begin));
     parts.push_back(text.substr(begin));
     return parts;
 }
 
 void parseSize(const Arguments& arguments, SynthOptions& options) {
     const std::string text = arguments.text("size");
-    if (text.empty()) throw Error(ErrorCode::InvalidOption, "--size: missing; give X,Y,Z in voxels or as multiples, for example --size 2x,2x,1x");
+    if (text.empty())
+        throw Error(ErrorCode::InvalidOption,
+                    "--size: missing; give X,Y,Z in voxels or as multiples, for example --size 2x,2x,1x");
     const std::vector<std::string> parts = split(text);
-    const char* range = "three sizes with commas, each in voxels or as a multiple, for example 2x,2x,1x or 128,128,64";
+    const char* range =
+        "three sizes with commas, each in voxels or as a multiple, for example 2x,2x,1x or 128,128,64";
     requireOption(parts.size() == 3, "size", text, range);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         char* end = nullptr;
         const double value = std::strtod(parts[axis].c_str(), &end);
         const bool multiple = std::string(end) == "x";
-        requireOption(!parts[axis].empty() && end != parts[axis].c_str() && (multiple || *end == 0) && std::isfinite(value) && value > 0, "size", text, range);
-        requireOption(multiple ? value >= 1 && value <= 1e6 : value == std::floor(value) && value <= 1 << 20, "size", text, multiple ? "multiples of at least 1x" : "whole numbers of voxels up to 1048576");
+        requireOption(!parts[axis].empty() && end != parts[axis].c_str() && (multiple || *end == 0) &&
+                          std::isfinite(value) && value > 0,
+                      "size", text, range);
+        requireOption(multiple ? value >= 1 && value <= 1e6 : value == std::floor(value) && value <= 1 << 20,
+                      "size", text,
+                      multiple ? "multiples of at least 1x" : "whole numbers of voxels up to 1048576");
         options.size[axis] = value;
         options.multiple[axis] = multiple;
     }
@@ -45,7 +53,8 @@ void parseBorder(const Arguments& arguments, SynthOptions& options) {
     if (parts.size() == 1) parts.assign(3, parts[0]);
     requireOption(parts.size() == 3, "border", text, "cut or object, once or for each axis with commas");
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        requireOption(parts[axis] == "cut" || parts[axis] == "object", "border", text, "cut or object, once or for each axis with commas");
+        requireOption(parts[axis] == "cut" || parts[axis] == "object", "border", text,
+                      "cut or object, once or for each axis with commas");
         options.border[axis] = parts[axis] == "cut" ? Border::Cut : Border::Object;
     }
 }
@@ -74,7 +83,10 @@ void synth(Run& run) {
     for (const std::string& path : paths) anyVdb = anyVdb || extensionOf(path) == "vdb";
     if (!mapPath.empty()) {
         requireOption(mapInside || extensionOf(mapPath) == "vdb", "source-map", mapPath, "a .vdb file");
-        if (mapInside && !anyVdb) throw Error(ErrorCode::InvalidOption, "--source-map: without a file it goes into a .vdb output, and there is none; give --source-map FILE.vdb");
+        if (mapInside && !anyVdb)
+            throw Error(ErrorCode::InvalidOption,
+                        "--source-map: without a file it goes into a .vdb output, and there is none; give "
+                        "--source-map FILE.vdb");
     }
     ModelOutputOptions outputs;
     outputs.adaptivity = run.arguments.real("adaptivity", 0, 0, 1);
@@ -85,7 +97,9 @@ void synth(Run& run) {
     if (run.arguments.has("exemplar-mask")) {
         const std::string maskPath = run.arguments.text("exemplar-mask");
         const std::vector<GridPtr> grids = readVdbGrids(maskPath, run.context);
-        if (grids.size() != 1) throw Error(ErrorCode::BadData, maskPath + ": a mask file holds one grid, this one holds " + std::to_string(grids.size()));
+        if (grids.size() != 1)
+            throw Error(ErrorCode::BadData, maskPath + ": a mask file holds one grid, this one holds " +
+                                                std::to_string(grids.size()));
         options.exemplarMask = grids.front();
         run.noteInput(maskPath);
     }
@@ -112,7 +126,8 @@ void repeat(Run& run) {
     const std::vector<std::string> paths = run.outputPaths();
     requireOutputPaths(paths);
     const std::string mapPath = run.arguments.inputs[0];
-    if (extensionOf(mapPath) != "vdb") throw Error(ErrorCode::InvalidOption, mapPath + ": a source map is a .vdb file");
+    if (extensionOf(mapPath) != "vdb")
+        throw Error(ErrorCode::InvalidOption, mapPath + ": a source map is a .vdb file");
     requireModelPath(run.arguments.inputs[1]);
     ModelOutputOptions outputs;
     outputs.adaptivity = run.arguments.real("adaptivity", 0, 0, 1);
@@ -127,25 +142,33 @@ void repeat(Run& run) {
     run.finish();
 }
 
-} // namespace
+}  // namespace
 
 const Command kSynth{
-    "synth", "synth EXEMPLAR -o OUT --size X,Y,Z [options]", "Make more geometry like an exemplar's", "vdb_synth synth grid.vdb -o more.vdb --size 2x,2x,1x",
+    "synth",
+    "synth EXEMPLAR -o OUT --size X,Y,Z [options]",
+    "Make more geometry like an exemplar's",
+    "vdb_synth synth grid.vdb -o more.vdb --size 2x,2x,1x",
     {{"size", "X,Y,Z", "size of the result: voxels, or multiples of the exemplar's domain such as 2x,2x,1x"},
      {"block", "N", "side of the matched blocks (voxels), 4 to 256; default from the exemplar, at most 16"},
      {"levels", "N", "number of passes, coarse to fine; default 3 or as many as fit"},
      {"draft", "", "leave out the finest pass: several times faster"},
-     {"border", "KIND", "cut or object, once or for each growing axis; default cut where a domain is recorded"},
-     {"exemplar-box", "BOX", "domain i,j,k,I,J,K in the exemplar's index space, both corners inclusive (voxels)"},
+     {"border", "KIND",
+      "cut or object, once or for each growing axis; default cut where a domain is recorded"},
+     {"exemplar-box", "BOX",
+      "domain i,j,k,I,J,K in the exemplar's index space, both corners inclusive (voxels)"},
      {"exemplar-mask", "FILE.vdb", "take blocks only from where this grid is active"},
      {"drift", "D", "how far sources may be from their own place along axes at 1x (voxels), default 0"},
-     {"source-map", "[FILE.vdb]", "also write the source map, for repeat; without FILE into the .vdb output", false, 0, ".vdb"},
+     {"source-map", "[FILE.vdb]", "also write the source map, for repeat; without FILE into the .vdb output",
+      false, 0, ".vdb"},
      {"adaptivity", "A", "0 to 1: merge flat parts of a mesh output, default 0"}},
     synth};
 
-const Command kRepeat{
-    "repeat", "repeat MAP EXEMPLAR -o OUT [options]", "Apply a saved source map again", "vdb_synth repeat map.vdb grid.vdb -o again.vdb",
-    {{"adaptivity", "A", "0 to 1: merge flat parts of a mesh output, default 0"}},
-    repeat};
+const Command kRepeat{"repeat",
+                      "repeat MAP EXEMPLAR -o OUT [options]",
+                      "Apply a saved source map again",
+                      "vdb_synth repeat map.vdb grid.vdb -o again.vdb",
+                      {{"adaptivity", "A", "0 to 1: merge flat parts of a mesh output, default 0"}},
+                      repeat};
 
-} // namespace vdbsynth::cli
+}  // namespace vdbsynth::cli

@@ -57,8 +57,8 @@ private:
 /// One command of the tool. The table in main.cpp is the only registry.
 struct Command {
     std::string name, usage, summary, example;
-    std::vector<Option> options;      ///< its own; the common ones come on top
-    void (*run)(Run&);                ///< checks every option before it reads a file
+    std::vector<Option> options;  ///< its own; the common ones come on top
+    void (*run)(Run&);            ///< checks every option before it reads a file
 };
 
 const std::vector<Option>& commonOptions();
@@ -69,4 +69,4 @@ void printLine(const std::string& text);
 
 extern const Command kConvert, kInfo, kCrop, kMask, kMatch, kSynth, kRepeat, kRender, kMake;
 
-} // namespace vdbsynth::cli
+}  // namespace vdbsynth::cli

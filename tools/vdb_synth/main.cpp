@@ -18,24 +18,30 @@ namespace {
 
 // The only registry of commands.
 const std::vector<const Command*>& commands() {
-    static const std::vector<const Command*> all{&kConvert, &kInfo, &kCrop, &kMask, &kMatch, &kSynth, &kRepeat, &kRender, &kMake};
+    static const std::vector<const Command*> all{&kConvert, &kInfo,   &kCrop,   &kMask, &kMatch,
+                                                 &kSynth,   &kRepeat, &kRender, &kMake};
     return all;
 }
 
 std::string overview() {
-    std::string text = "vdb_synth makes new geometry from examples.\n\nUsage: vdb_synth COMMAND INPUTS -o OUTPUT [options]\n\n";
+    std::string text =
+        "vdb_synth makes new geometry from examples.\n\nUsage: vdb_synth COMMAND INPUTS -o OUTPUT "
+        "[options]\n\n";
     for (const Command* command : commands()) {
         std::string name = command->name;
         name.resize(10, ' ');
         text += "  " + name + command->summary + "\n";
     }
-    return text + "\nvdb_synth COMMAND --help tells more. Exit codes: 0 done, 1 unusable input, 2 bad option, 3 bad file, 130 and 143 stopped.\n";
+    return text +
+           "\nvdb_synth COMMAND --help tells more. Exit codes: 0 done, 1 unusable input, 2 bad option, 3 bad "
+           "file, 130 and 143 stopped.\n";
 }
 
 int fail(const Error& error, const std::string& command) {
     std::string text = error.what();
     std::replace(text.begin(), text.end(), '\n', ' ');
-    std::fprintf(stderr, "vdb_synth%s%s: error: %s\n", command.empty() ? "" : " ", command.c_str(), text.c_str());
+    std::fprintf(stderr, "vdb_synth%s%s: error: %s\n", command.empty() ? "" : " ", command.c_str(),
+                 text.c_str());
     if (error.code() == ErrorCode::Cancelled && stopSignal()) return 128 + stopSignal();
     return exitCode(error.code());
 }
@@ -48,21 +54,28 @@ void mergeConfig(const Command& command, Arguments& arguments) {
     if (!file) throw Error(ErrorCode::Io, path + ": no such file");
     nlohmann::json json = nlohmann::json::parse(file, nullptr, /* allow_exceptions= */ false);
     if (json.is_object() && json.contains("options")) json = json["options"];
-    if (!json.is_object()) throw Error(ErrorCode::BadData, path + ": not a JSON object of options, such as the \"options\" of a --report");
+    if (!json.is_object())
+        throw Error(ErrorCode::BadData,
+                    path + ": not a JSON object of options, such as the \"options\" of a --report");
     std::vector<std::string> names;
     for (const Option& option : commonOptions()) names.push_back(option.name);
     for (const Option& option : command.options) names.push_back(option.name);
     for (const auto& [name, value] : json.items()) {
         std::vector<std::string> values;
-        const auto add = [&](const nlohmann::json& item) { values.push_back(item.is_string() ? item.get<std::string>() : item.dump()); };
-        if (value.is_array()) for (const auto& item : value) add(item);
-        else add(value);
+        const auto add = [&](const nlohmann::json& item) {
+            values.push_back(item.is_string() ? item.get<std::string>() : item.dump());
+        };
+        if (value.is_array())
+            for (const auto& item : value) add(item);
+        else
+            add(value);
         if (name == "inputs") {
             if (arguments.inputs.empty()) arguments.inputs = values;
             continue;
         }
         if (std::find(names.begin(), names.end(), name) == names.end())
-            throw Error(ErrorCode::InvalidOption, path + ": \"" + name + "\" is not an option of " + command.name);
+            throw Error(ErrorCode::InvalidOption,
+                        path + ": \"" + name + "\" is not an option of " + command.name);
         if (!arguments.has(name) && !values.empty()) arguments.values[name] = values;
     }
 }
@@ -87,7 +100,9 @@ int execute(const Command& command, const Arguments& arguments, const Supervisor
     } catch (const Error& error) {
         return fail(error, command.name);
     } catch (const std::bad_alloc&) {
-        return fail(Error(ErrorCode::Memory, "out of memory; use larger voxels, a smaller size or a larger --max-memory"), command.name);
+        return fail(Error(ErrorCode::Memory,
+                          "out of memory; use larger voxels, a smaller size or a larger --max-memory"),
+                    command.name);
     } catch (const std::exception& error) {
         return fail(Error(ErrorCode::Solver, std::string("internal error: ") + error.what()), command.name);
     }
@@ -102,7 +117,10 @@ int dispatch(const std::string& name, const std::vector<std::string>& words) {
     }
     if (!command) {
         const std::string near = nearestName(name, names);
-        return fail(Error(ErrorCode::InvalidOption, name + ": unknown command" + (near.empty() ? "; see vdb_synth --help" : "; did you mean " + near + "?")), "");
+        return fail(Error(ErrorCode::InvalidOption,
+                          name + ": unknown command" +
+                              (near.empty() ? "; see vdb_synth --help" : "; did you mean " + near + "?")),
+                    "");
     }
     Arguments arguments;
     try {
@@ -129,7 +147,7 @@ int dispatch(const std::string& name, const std::vector<std::string>& words) {
     return supervise(work);
 }
 
-} // namespace
+}  // namespace
 
 const std::vector<Option>& commonOptions() {
     static const std::vector<Option> options{
@@ -158,9 +176,13 @@ std::string helpText(const Command& command) {
     std::string text = command.summary + "\n\nUsage: vdb_synth " + command.usage + "\n\n";
     const auto list = [&text](const std::vector<Option>& options) {
         for (const Option& option : options) {
-            std::string left = "  " + (option.letter ? std::string("-") + option.letter + ", " : std::string()) + "--" + option.name + (option.argument.empty() ? "" : " " + option.argument);
-            if (left.size() < 30) left.resize(30, ' ');
-            else left += "\n" + std::string(30, ' ');
+            std::string left = "  " +
+                               (option.letter ? std::string("-") + option.letter + ", " : std::string()) +
+                               "--" + option.name + (option.argument.empty() ? "" : " " + option.argument);
+            if (left.size() < 30)
+                left.resize(30, ' ');
+            else
+                left += "\n" + std::string(30, ' ');
             text += left + option.help + "\n";
         }
     };
@@ -174,7 +196,7 @@ std::string helpText(const Command& command) {
     return text + "\nExample:\n  " + command.example + "\n";
 }
 
-} // namespace vdbsynth::cli
+}  // namespace vdbsynth::cli
 
 int main(int argc, char** argv) {
     using namespace vdbsynth;

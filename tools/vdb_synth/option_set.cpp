@@ -14,7 +14,9 @@ namespace po = boost::program_options;
 namespace vdbsynth::cli {
 namespace {
 
-[[noreturn]] void refuse(const std::string& text) { throw Error(ErrorCode::InvalidOption, text); }
+[[noreturn]] void refuse(const std::string& text) {
+    throw Error(ErrorCode::InvalidOption, text);
+}
 
 std::size_t editDistance(const std::string& a, const std::string& b) {
     std::vector<std::size_t> row(b.size() + 1);
@@ -34,7 +36,8 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
 bool parseNumber(const std::string& text, double& value) {
     char* end = nullptr;
     value = std::strtod(text.c_str(), &end);
-    return !text.empty() && *end == 0 && std::isfinite(value) && text.find_first_of("xXpP ") == std::string::npos;
+    return !text.empty() && *end == 0 && std::isfinite(value) &&
+           text.find_first_of("xXpP ") == std::string::npos;
 }
 
 std::string number(double value) {
@@ -47,15 +50,18 @@ po::options_description describe(const std::vector<Option>& options) {
     po::options_description description;
     for (const Option& option : options) {
         const std::string names = option.letter ? option.name + "," + option.letter : option.name;
-        if (option.argument.empty()) description.add_options()(names.c_str(), "");
-        else description.add_options()(names.c_str(), po::value<std::vector<std::string>>(), "");
+        if (option.argument.empty())
+            description.add_options()(names.c_str(), "");
+        else
+            description.add_options()(names.c_str(), po::value<std::vector<std::string>>(), "");
     }
     description.add_options()("inputs", po::value<std::vector<std::string>>(), "");
     return description;
 }
 
 // "--option" whose value may be left out becomes "--option=" or "--option=value".
-std::vector<std::string> bindOptionalValues(const std::vector<Option>& options, const std::vector<std::string>& words) {
+std::vector<std::string> bindOptionalValues(const std::vector<Option>& options,
+                                            const std::vector<std::string>& words) {
     std::vector<std::string> bound;
     for (std::size_t i = 0; i < words.size(); ++i) {
         const auto optional = std::find_if(options.begin(), options.end(), [&](const Option& o) {
@@ -65,7 +71,8 @@ std::vector<std::string> bindOptionalValues(const std::vector<Option>& options, 
         if (optional == options.end()) continue;
         const std::string& ending = optional->ending;
         const std::string next = i + 1 < words.size() ? words[i + 1] : "";
-        const bool hasValue = next.size() > ending.size() && next.compare(next.size() - ending.size(), ending.size(), ending) == 0;
+        const bool hasValue = next.size() > ending.size() &&
+                              next.compare(next.size() - ending.size(), ending.size(), ending) == 0;
         bound.back() += "=" + (hasValue ? words[++i] : kNoValue);
     }
     return bound;
@@ -76,7 +83,7 @@ std::string dashed(std::string name) {
     return name.substr(0, name.find('='));
 }
 
-} // namespace
+}  // namespace
 
 std::string nearestName(const std::string& word, const std::vector<std::string>& names) {
     std::string best;
@@ -104,15 +111,19 @@ std::vector<std::string> Arguments::all(const std::string& name) const {
 int Arguments::whole(const std::string& name, int fallback, int low, int high) const {
     if (!has(name)) return fallback;
     double value = 0;
-    const bool ok = parseNumber(text(name), value) && value == std::floor(value) && value >= low && value <= high;
-    requireOption(ok, name, text(name), "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
+    const bool ok =
+        parseNumber(text(name), value) && value == std::floor(value) && value >= low && value <= high;
+    requireOption(ok, name, text(name),
+                  "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
     return int(value);
 }
 
 std::uint64_t Arguments::wide(const std::string& name, std::uint64_t fallback) const {
     if (!has(name)) return fallback;
     const std::string given = text(name);
-    requireOption(!given.empty() && given.size() <= 19 && given.find_first_not_of("0123456789") == std::string::npos, name, given, "a whole number from 0 to 9999999999999999999");
+    requireOption(
+        !given.empty() && given.size() <= 19 && given.find_first_not_of("0123456789") == std::string::npos,
+        name, given, "a whole number from 0 to 9999999999999999999");
     return std::strtoull(given.c_str(), nullptr, 10);
 }
 
@@ -124,14 +135,16 @@ double Arguments::real(const std::string& name, double fallback, double low, dou
     return value;
 }
 
-std::array<double, 3> Arguments::triple(const std::string& name, const std::array<double, 3>& fallback) const {
+std::array<double, 3> Arguments::triple(const std::string& name,
+                                        const std::array<double, 3>& fallback) const {
     if (!has(name)) return fallback;
     std::array<double, 3> result{};
     std::string rest = text(name);
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t comma = rest.find(',');
         const bool last = i == 2;
-        requireOption(last == (comma == std::string::npos) && parseNumber(rest.substr(0, comma), result[i]), name, text(name), "three numbers with commas, for example 1,2,3");
+        requireOption(last == (comma == std::string::npos) && parseNumber(rest.substr(0, comma), result[i]),
+                      name, text(name), "three numbers with commas, for example 1,2,3");
         if (!last) rest = rest.substr(comma + 1);
     }
     return result;
@@ -139,7 +152,8 @@ std::array<double, 3> Arguments::triple(const std::string& name, const std::arra
 
 IndexBox Arguments::box(const std::string& name) const {
     IndexBox box;
-    requireOption(parseBox(text(name), box), name, text(name), "six whole numbers i,j,k,I,J,K, every minimum at most its maximum");
+    requireOption(parseBox(text(name), box), name, text(name),
+                  "six whole numbers i,j,k,I,J,K, every minimum at most its maximum");
     return box;
 }
 
@@ -157,7 +171,8 @@ std::uint64_t Arguments::bytes(const std::string& name, std::uint64_t fallback) 
         }
     }
     double value = 0;
-    requireOption(parseNumber(given, value) && value * unit >= 1e6 && value * unit <= 1e15, name, text(name), "at least 1M, for example 4G");
+    requireOption(parseNumber(given, value) && value * unit >= 1e6 && value * unit <= 1e15, name, text(name),
+                  "at least 1M, for example 4G");
     return std::uint64_t(value * unit);
 }
 
@@ -171,28 +186,36 @@ Arguments parseArguments(const std::vector<Option>& options, const std::vector<s
     const int flags = (style::unix_style | style::allow_long_disguise) & ~style::allow_guessing;
     Arguments arguments;
     try {
-        const po::parsed_options parsed = po::command_line_parser(bindOptionalValues(options, words)).options(description).positional(positional).style(flags).run();
+        const po::parsed_options parsed = po::command_line_parser(bindOptionalValues(options, words))
+                                              .options(description)
+                                              .positional(positional)
+                                              .style(flags)
+                                              .run();
         for (const po::option& given : parsed.options) {
             if (given.string_key == "inputs") {
                 arguments.inputs.insert(arguments.inputs.end(), given.value.begin(), given.value.end());
                 continue;
             }
             auto& values = arguments.values[given.string_key];
-            if (given.value.empty()) values = {"true"};
-            else values.insert(values.end(), given.value.begin(), given.value.end());
+            if (given.value.empty())
+                values = {"true"};
+            else
+                values.insert(values.end(), given.value.begin(), given.value.end());
         }
     } catch (const po::unknown_option& e) {
         const std::string name = dashed(e.get_option_name());
         const std::string near = nearestName(name, names);
-        refuse("--" + name + ": unknown option" + (near.empty() ? "; see --help" : "; did you mean --" + near + "?"));
+        refuse("--" + name + ": unknown option" +
+               (near.empty() ? "; see --help" : "; did you mean --" + near + "?"));
     } catch (const po::error_with_option_name& e) {
         refuse("--" + dashed(e.get_option_name()) + ": needs a value; see --help");
     } catch (const po::error& e) {
         refuse(std::string(e.what()) + "; see --help");
     }
     for (const Option& option : options)
-        if (!option.repeats && arguments.all(option.name).size() > 1) refuse("--" + option.name + ": given twice");
+        if (!option.repeats && arguments.all(option.name).size() > 1)
+            refuse("--" + option.name + ": given twice");
     return arguments;
 }
 
-} // namespace vdbsynth::cli
+}  // namespace vdbsynth::cli

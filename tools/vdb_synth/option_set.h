@@ -20,7 +20,8 @@ struct Option {
     std::string help;      ///< one line; lengths are marked (voxels) or (world)
     bool repeats = false;  ///< may be given several times
     char letter = 0;       ///< short form, 0: none
-    std::string ending = "";     ///< not empty: the value may be left out; the next word is it only if it ends so
+    std::string ending =
+        "";  ///< not empty: the value may be left out; the next word is it only if it ends so
 };
 
 /// What was given on the command line and in --config, as text; typed readers check ranges. Every reader
@@ -49,4 +50,4 @@ Arguments parseArguments(const std::vector<Option>& options, const std::vector<s
 /// The nearest of `names` to `word`, empty if none is near.
 std::string nearestName(const std::string& word, const std::vector<std::string>& names);
 
-} // namespace vdbsynth::cli
+}  // namespace vdbsynth::cli

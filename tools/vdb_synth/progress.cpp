@@ -17,8 +17,10 @@ std::uint64_t peakMemory() {
 void ProgressLog::endStage() {
     if (mCurrent.empty()) return;
     const double seconds = std::chrono::duration<double>(Clock::now() - mBegan).count();
-    if (!mStages.empty() && mStages.back().name == mCurrent) mStages.back().seconds += seconds;
-    else mStages.push_back({mCurrent, seconds, 0});
+    if (!mStages.empty() && mStages.back().name == mCurrent)
+        mStages.back().seconds += seconds;
+    else
+        mStages.push_back({mCurrent, seconds, 0});
     mStages.back().peakBytes = peakMemory();
 }
 
@@ -39,14 +41,16 @@ void ProgressLog::draw(const Progress& progress) {
     mDrawn = now;
     const double fraction = double(progress.done) / double(progress.total);
     if (mStyle == ProgressStyle::Json) {
-        const nlohmann::json line{{"stage", progress.stage}, {"done", progress.done}, {"total", progress.total}};
+        const nlohmann::json line{
+            {"stage", progress.stage}, {"done", progress.done}, {"total", progress.total}};
         std::fprintf(stderr, "%s\n", line.dump().c_str());
         return;
     }
     constexpr int kWidth = 30;
     std::string bar(kWidth, ' ');
     for (int i = 0; i < int(fraction * kWidth); ++i) bar[std::size_t(i)] = '#';
-    std::fprintf(stderr, "\r\033[K[%s] %3d %% %.60s", bar.c_str(), int(fraction * 100), progress.stage.c_str());
+    std::fprintf(stderr, "\r\033[K[%s] %3d %% %.60s", bar.c_str(), int(fraction * 100),
+                 progress.stage.c_str());
     std::fflush(stderr);
     mVisible = true;
 }
@@ -65,4 +69,4 @@ const std::vector<StageRecord>& ProgressLog::finish() {
     return mStages;
 }
 
-} // namespace vdbsynth::cli
+}  // namespace vdbsynth::cli

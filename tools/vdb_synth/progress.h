@@ -42,4 +42,4 @@ private:
 /// Largest resident memory of this process so far. [bytes]
 std::uint64_t peakMemory();
 
-} // namespace vdbsynth::cli
+}  // namespace vdbsynth::cli

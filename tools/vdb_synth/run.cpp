@@ -20,17 +20,23 @@ namespace {
 
 ProgressStyle progressStyle(const Arguments& arguments) {
     const std::string style = arguments.text("progress", "auto");
-    requireOption(style == "auto" || style == "bar" || style == "json" || style == "off", "progress", style, "auto, bar, json or off");
+    requireOption(style == "auto" || style == "bar" || style == "json" || style == "off", "progress", style,
+                  "auto, bar, json or off");
     if (style == "bar") return ProgressStyle::Bar;
     if (style == "json") return ProgressStyle::Json;
-    return style == "auto" && ::isatty(2) && !arguments.has("quiet") ? ProgressStyle::Bar : ProgressStyle::Off;
+    return style == "auto" && ::isatty(2) && !arguments.has("quiet") ? ProgressStyle::Bar
+                                                                     : ProgressStyle::Off;
 }
 
-std::uint64_t presentMemory() { return std::uint64_t(::sysconf(_SC_PHYS_PAGES)) * std::uint64_t(::sysconf(_SC_PAGE_SIZE)); }
+std::uint64_t presentMemory() {
+    return std::uint64_t(::sysconf(_SC_PHYS_PAGES)) * std::uint64_t(::sysconf(_SC_PAGE_SIZE));
+}
 
 // Options that change how a run goes, not what it makes.
 const std::set<std::string>& incidental() {
-    static const std::set<std::string> names{"threads", "progress", "report", "config", "quiet", "verbose", "max-memory", "output", "no-supervisor", "seed", "source-map"};
+    static const std::set<std::string> names{"threads",       "progress", "report",     "config",
+                                             "quiet",         "verbose",  "max-memory", "output",
+                                             "no-supervisor", "seed",     "source-map"};
     return names;
 }
 
@@ -39,7 +45,7 @@ nlohmann::json asJson(const std::vector<std::string>& values) {
     return values;
 }
 
-} // namespace
+}  // namespace
 
 struct Run::Impl {
     const Command& command;
@@ -73,9 +79,12 @@ Run::Run(const Command& command, Arguments given, const SupervisorLine& line)
     context.maxMemory = arguments.bytes("max-memory", presentMemory() / 10 * 8);
     context.cancel = stopFlag();
     context.onProgress = [&impl](const Progress& progress) {
-        if (progress.reading) impl.line.reading(progress.stage.substr(progress.stage.find(' ') + 1));
-        else if (impl.reading) impl.line.doneReading();
-        else impl.line.alive();
+        if (progress.reading)
+            impl.line.reading(progress.stage.substr(progress.stage.find(' ') + 1));
+        else if (impl.reading)
+            impl.line.doneReading();
+        else
+            impl.line.alive();
         if (progress.reading && progress.done == progress.total) impl.line.doneReading();
         impl.reading = progress.reading;
         impl.progress.update(progress);
@@ -84,29 +93,39 @@ Run::Run(const Command& command, Arguments given, const SupervisorLine& line)
         if (level == MessageLevel::Detail && !impl.verbose) return;
         if (level != MessageLevel::Warning && impl.quiet) return;
         impl.progress.clear();
-        std::fprintf(stderr, "vdb_synth: %s%s\n", level == MessageLevel::Warning ? "warning: " : "", text.c_str());
+        std::fprintf(stderr, "vdb_synth: %s%s\n", level == MessageLevel::Warning ? "warning: " : "",
+                     text.c_str());
     };
     mOutputs = std::make_unique<OutputSet>([&impl](const std::string& path) { impl.line.temporary(path); });
 }
 
-Run::~Run() { mImpl->progress.clear(); }
+Run::~Run() {
+    mImpl->progress.clear();
+}
 
 std::vector<std::string> Run::outputPaths() const {
     const std::vector<std::string> paths = arguments.all("output");
-    if (paths.empty()) throw Error(ErrorCode::InvalidOption, "--output: missing; say where the result goes with -o FILE");
+    if (paths.empty())
+        throw Error(ErrorCode::InvalidOption, "--output: missing; say where the result goes with -o FILE");
     return paths;
 }
 
 std::string Run::outputPath() const {
     const std::vector<std::string> paths = outputPaths();
-    if (paths.size() > 1) throw Error(ErrorCode::InvalidOption, "--output: " + mImpl->command.name + " writes one file");
+    if (paths.size() > 1)
+        throw Error(ErrorCode::InvalidOption, "--output: " + mImpl->command.name + " writes one file");
     return paths.front();
 }
 
 void Run::requireInputs(std::size_t low, std::size_t high) const {
     const std::size_t given = arguments.inputs.size();
-    if (given < low) throw Error(ErrorCode::InvalidOption, std::string(given == 0 ? "no input" : "too few inputs") + "; usage: vdb_synth " + mImpl->command.usage);
-    if (given > high) throw Error(ErrorCode::InvalidOption, arguments.inputs[high] + ": one input too many; usage: vdb_synth " + mImpl->command.usage);
+    if (given < low)
+        throw Error(ErrorCode::InvalidOption, std::string(given == 0 ? "no input" : "too few inputs") +
+                                                  "; usage: vdb_synth " + mImpl->command.usage);
+    if (given > high)
+        throw Error(
+            ErrorCode::InvalidOption,
+            arguments.inputs[high] + ": one input too many; usage: vdb_synth " + mImpl->command.usage);
 }
 
 ModelOptions Run::modelOptions() const {
@@ -121,9 +140,13 @@ ModelOptions Run::modelOptions() const {
     return options;
 }
 
-void Run::noteInput(const std::string& path) { mImpl->inputs.emplace_back(fileNameOf(path), fileHash(path)); }
+void Run::noteInput(const std::string& path) {
+    mImpl->inputs.emplace_back(fileNameOf(path), fileHash(path));
+}
 
-LevelSet Run::load(const std::string& path) { return load(path, modelOptions()); }
+LevelSet Run::load(const std::string& path) {
+    return load(path, modelOptions());
+}
 
 LevelSet Run::load(const std::string& path, const ModelOptions& options) {
     LevelSet model = loadModel(path, options, context);
@@ -141,20 +164,30 @@ VdbMetadata Run::metadata() const {
             {"vdbsynth:inputs", inputs.dump()}};
 }
 
-void Run::count(const std::string& name, const nlohmann::json& value) { mImpl->counts[name] = value; }
+void Run::count(const std::string& name, const nlohmann::json& value) {
+    mImpl->counts[name] = value;
+}
 
 void Run::finish() {
     Impl& impl = *mImpl;
     if (arguments.has("report")) {
         nlohmann::json stages = nlohmann::json::array();
         for (const StageRecord& stage : impl.progress.finish())
-            stages.push_back({{"name", stage.name}, {"seconds", stage.seconds}, {"peak_bytes", stage.peakBytes}});
+            stages.push_back(
+                {{"name", stage.name}, {"seconds", stage.seconds}, {"peak_bytes", stage.peakBytes}});
         nlohmann::json inputs = nlohmann::json::array();
         for (const auto& [name, hash] : impl.inputs) inputs.push_back({{"name", name}, {"hash", hash}});
-        const nlohmann::json report{{"program", "vdb_synth"}, {"version", kVersion}, {"command", impl.command.name},
-                                    {"options", impl.options(arguments, false)}, {"seed", context.seed}, {"inputs", inputs},
-                                    {"seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - impl.began).count()},
-                                    {"peak_bytes", peakMemory()}, {"stages", stages}, {"counts", impl.counts}};
+        const nlohmann::json report{
+            {"program", "vdb_synth"},
+            {"version", kVersion},
+            {"command", impl.command.name},
+            {"options", impl.options(arguments, false)},
+            {"seed", context.seed},
+            {"inputs", inputs},
+            {"seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - impl.began).count()},
+            {"peak_bytes", peakMemory()},
+            {"stages", stages},
+            {"counts", impl.counts}};
         const std::string path = arguments.text("report");
         std::ofstream file(mOutputs->add(path));
         file << report.dump(2) << '\n';
@@ -166,6 +199,8 @@ void Run::finish() {
     impl.progress.finish();
 }
 
-void printLine(const std::string& text) { std::printf("%s\n", text.c_str()); }
+void printLine(const std::string& text) {
+    std::printf("%s\n", text.c_str());
+}
 
-} // namespace vdbsynth::cli
+}  // namespace vdbsynth::cli

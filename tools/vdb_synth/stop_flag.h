@@ -6,4 +6,4 @@ namespace vdbsynth::cli {
 /// True once SIGINT or SIGTERM came in.
 const std::atomic<bool>* stopFlag();
 
-} // namespace vdbsynth::cli
+}  // namespace vdbsynth::cli

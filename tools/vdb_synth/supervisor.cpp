@@ -32,8 +32,8 @@ extern "C" void onStopSignal(int signal) {
 // What the parent knows of the child.
 struct Child {
     pid_t process = 0;
-    std::string pending;              // bytes of an unfinished message
-    std::string reading;              // file being read, empty if none
+    std::string pending;  // bytes of an unfinished message
+    std::string reading;  // file being read, empty if none
     Clock::time_point lastSign = Clock::now();
     std::set<std::string> temporaries;
 };
@@ -75,18 +75,27 @@ void removeTemporaries(const Child& child) {
 int reportDeath(const Child& child, int signal, bool hung) {
     const char* program = "vdb_synth: error: ";
     if (hung) {
-        std::fprintf(stderr, "%s%s: reading made no progress and was stopped; the file is corrupt or not what its name says\n", program, child.reading.c_str());
+        std::fprintf(
+            stderr,
+            "%s%s: reading made no progress and was stopped; the file is corrupt or not what its name says\n",
+            program, child.reading.c_str());
         return 3;
     }
     if (signal == SIGKILL) {
-        std::fprintf(stderr, "%s%sthe work was killed, most likely out of memory; use larger voxels, a smaller size or --max-memory\n", program, child.reading.empty() ? "" : (child.reading + ": ").c_str());
+        std::fprintf(stderr,
+                     "%s%sthe work was killed, most likely out of memory; use larger voxels, a smaller size "
+                     "or --max-memory\n",
+                     program, child.reading.empty() ? "" : (child.reading + ": ").c_str());
         return 1;
     }
     if (!child.reading.empty()) {
-        std::fprintf(stderr, "%s%s: its reader crashed (signal %d); the file is truncated or corrupt\n", program, child.reading.c_str(), signal);
+        std::fprintf(stderr, "%s%s: its reader crashed (signal %d); the file is truncated or corrupt\n",
+                     program, child.reading.c_str(), signal);
         return 3;
     }
-    std::fprintf(stderr, "%sinternal error (signal %d); nothing was written; please report the command line\n", program, signal);
+    std::fprintf(stderr,
+                 "%sinternal error (signal %d); nothing was written; please report the command line\n",
+                 program, signal);
     return 1;
 }
 
@@ -127,10 +136,14 @@ int watch(Child& child, int file) {
     return reportDeath(child, WTERMSIG(status), hung);
 }
 
-} // namespace
+}  // namespace
 
-const std::atomic<bool>* stopFlag() { return &gStop; }
-int stopSignal() { return gSignal; }
+const std::atomic<bool>* stopFlag() {
+    return &gStop;
+}
+int stopSignal() {
+    return gSignal;
+}
 
 void installStopHandlers() {
     struct sigaction action {};
@@ -176,4 +189,4 @@ int supervise(const std::function<int(const SupervisorLine&)>& work) {
     return watch(child, ends[0]);
 }
 
-} // namespace vdbsynth::cli
+}  // namespace vdbsynth::cli

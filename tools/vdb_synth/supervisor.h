@@ -20,8 +20,8 @@ private:
 
 /// Runs `work` in a child process and watches it: a child that crashes, is killed, runs out of memory or
 /// hangs while it reads a file becomes one line on standard error and an exit code by the contract, and its
-/// temporary files are removed. SIGINT and SIGTERM are passed on; a child that does not end within five seconds
-/// is killed. Call before any thread is started.
+/// temporary files are removed. SIGINT and SIGTERM are passed on; a child that does not end within five
+/// seconds is killed. Call before any thread is started.
 /// @return the exit code for this process
 int supervise(const std::function<int(const SupervisorLine&)>& work);
 
@@ -30,4 +30,4 @@ int stopSignal();
 /// Makes SIGINT and SIGTERM set the flag that `stopFlag` returns instead of ending the process.
 void installStopHandlers();
 
-} // namespace vdbsynth::cli
+}  // namespace vdbsynth::cli

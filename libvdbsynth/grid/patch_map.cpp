@@ -19,12 +19,12 @@ struct Span {
 Index3 PatchMap::lattice() const {
     Index3 n;
     for (int axis = 0; axis < 3; ++axis)
-        n[axis] = (std::max(target[axis] + overhang - block, 0) + stride - 1) / stride + 1;
+        n[axis] = (std::max(target[axis] + overhang[axis] - block, 0) + stride - 1) / stride + 1;
     return n;
 }
 
 int PatchMap::origin(int axis, int a) const {
-    return std::min(a * stride, std::max(target[axis] + overhang - block, 0));
+    return std::min(a * stride, std::max(target[axis] + overhang[axis] - block, 0));
 }
 
 void PatchMap::covering(int axis, int p, int& first, int& last) const {
@@ -47,11 +47,10 @@ PatchMap PatchMap::scaled(int factor, const Index3& newTarget) const {
     map.target = newTarget;
     map.block = block * factor;
     map.stride = stride * factor;
-    map.overhang = 0;
     for (int axis = 0; axis < 3; ++axis)
-        map.overhang = std::max(map.overhang, target[axis] * factor - newTarget[axis]);
+        map.overhang[axis] = (target[axis] + overhang[axis]) * factor - newTarget[axis];
     for (Index3& s : map.source) s = s * factor;
-    if (map.lattice() != lattice())
+    if (map.overhang.x < 0 || map.overhang.y < 0 || map.overhang.z < 0 || map.lattice() != lattice())
         throw Error(ErrorCode::ShapeMismatch,
                     "a source map of " + std::to_string(target.x) + " x " + std::to_string(target.y) + " x " +
                         std::to_string(target.z) + " voxels does not scale to the size asked for");

@@ -16,8 +16,8 @@ struct PatchMap {
     Index3 target{0, 0, 0};  ///< size of the target [voxels]
     int block = 16;          ///< N [voxels]
     int stride = 8;          ///< [voxels], 1..N
-    int overhang =
-        0;  ///< voxels by which the last block may end beyond the target (a map scaled from an odd size)
+    Index3 overhang{0, 0,
+                    0};  ///< voxels by which the last blocks end beyond the target (scaled from odd sizes)
     std::vector<Index3>
         source;  ///< [lattice, x slowest, z fastest] minimum corner of the matched block in its exemplar
     std::vector<std::int32_t> exemplar;  ///< [lattice] number of the exemplar

@@ -7,6 +7,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
@@ -86,7 +87,9 @@ std::vector<GridPtr> sourceMapGrids(const SourceMap& map, const openvdb::FloatGr
     putText(*votes, "format", "1");
     putText(*votes, "patch", std::to_string(map.patches.block));
     putText(*votes, "stride", std::to_string(map.patches.stride));
-    putText(*votes, "overhang", std::to_string(map.patches.overhang));
+    putText(*votes, "overhang",
+            std::to_string(map.patches.overhang.x) + "," + std::to_string(map.patches.overhang.y) + "," +
+                std::to_string(map.patches.overhang.z));
     putText(*votes, "kernel", kVoteKernel);
     std::string cut;
     for (bool face : map.cut) cut += face ? '1' : '0';
@@ -133,7 +136,12 @@ SourceMap readSourceMap(const std::string& path, const RunContext& ctx) {
                     path + ": its source map was written by another version of vdb_synth; make it again");
     map.patches.block = getWhole(path, *votes, "patch", 1, 65536);
     map.patches.stride = getWhole(path, *votes, "stride", 1, map.patches.block);
-    map.patches.overhang = getWhole(path, *votes, "overhang", 0, 65536);
+    Index3& overhang = map.patches.overhang;
+    const std::string overhangText = getText(path, *votes, "overhang");
+    if (std::sscanf(overhangText.c_str(), "%d,%d,%d", &overhang.x, &overhang.y, &overhang.z) != 3 ||
+        std::min({overhang.x, overhang.y, overhang.z}) < 0 ||
+        std::max({overhang.x, overhang.y, overhang.z}) > 65536)
+        throw Error(ErrorCode::BadData, path + ": its source map has a bad " + key("overhang"));
     const std::string cut = getText(path, *votes, "cut");
     if (cut.size() != 6) throw Error(ErrorCode::BadData, path + ": its source map has a bad " + key("cut"));
     for (std::size_t face = 0; face < 6; ++face) map.cut[face] = cut[face] == '1';

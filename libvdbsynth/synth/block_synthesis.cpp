@@ -5,6 +5,7 @@
 #include "libvdbsynth/base/random.h"
 #include "libvdbsynth/grid/pyramid.h"
 #include "libvdbsynth/search/block_index.h"
+#include "libvdbsynth/synth/synthesis_passes.h"
 
 #include <algorithm>
 #include <string>
@@ -14,32 +15,7 @@ namespace {
 
 constexpr std::uint32_t kFirstBlockPurpose = 0x66697273;
 using Fields = std::vector<std::shared_ptr<const BrickField>>;
-
-int halfOf(int n) {
-    return (n + 1) / 2;
-}
-Index3 halfOf(const Index3& n) {
-    return {halfOf(n.x), halfOf(n.y), halfOf(n.z)};
-}
-
-// The longest block that leaves the search a choice along every axis of an exemplar.
-int longestBlock(const Index3& exemplar, const Index3& target, const std::array<Border, 3>& border) {
-    int longest = 256;
-    for (int axis = 0; axis < 3; ++axis) {
-        const bool grows = exemplar[axis] != target[axis];
-        longest = std::min(longest, !grows                                        ? exemplar[axis]
-                                    : border[std::size_t(axis)] == Border::Object ? exemplar[axis] / 4
-                                                                                  : exemplar[axis] / 2);
-    }
-    return longest;
-}
-
-struct Pass {
-    Fields exemplars;
-    Index3 target;
-    int block = 0;
-    int scale = 1;  // voxels of the last pass in one of this
-};
+using Pass = SynthesisPass;
 
 class Synthesis {
 public:
@@ -62,7 +38,7 @@ public:
         map.target = pass.target;
         map.block = pass.block;
         map.stride = pass.block / 2;
-        map.overhang = 0;
+        map.overhang = {0, 0, 0};
         map.allocate();
         field = coarse ? doubled(*coarse, pass.target, mContext)
                        : BrickField(IndexBox::fromSize(pass.target), 0.f);
@@ -262,82 +238,11 @@ private:
     BlockSynthesisStats mStats;
 };
 
-// The passes, finest first; coarser ones end where a block would fall under four samples.
-std::vector<Pass> planPasses(const Fields& exemplars, const BlockSynthesisOptions& options, int block,
-                             const RunContext& ctx) {
-    std::vector<Pass> passes{{exemplars, options.size, block, 1}};
-    const int levels = options.levels > 0 ? options.levels : 3;
-    while (int(passes.size()) < levels) {
-        Pass coarse;
-        coarse.target = halfOf(passes.back().target);
-        coarse.scale = passes.back().scale * 2;
-        coarse.block = block;
-        for (const auto& exemplar : passes.back().exemplars) {
-            const Index3 size = halfOf(exemplar->box().size());
-            coarse.block = std::min(coarse.block, longestBlock(size, coarse.target, options.border) / 2 * 2);
-        }
-        if (coarse.block < 4) break;
-        for (const auto& exemplar : passes.back().exemplars)
-            coarse.exemplars.push_back(std::make_shared<BrickField>(halved(*exemplar, ctx)));
-        passes.push_back(coarse);
-    }
-    if (options.levels > int(passes.size()))
-        message(ctx, MessageLevel::Note,
-                "--levels " + std::to_string(options.levels) + ": the exemplar is large enough for " +
-                    std::to_string(passes.size()) + "; using those");
-    return passes;
-}
-
-void validate(const Fields& exemplars, const BlockSynthesisOptions& options) {
-    if (exemplars.empty()) throw Error(ErrorCode::InvalidOption, "synthesis needs at least one exemplar");
-    const std::string size = std::to_string(options.size.x) + "," + std::to_string(options.size.y) + "," +
-                             std::to_string(options.size.z);
-    for (int axis = 0; axis < 3; ++axis)
-        requireOption(options.size[axis] >= 4 && options.size[axis] <= 1 << 20, "size", size,
-                      "from 4 to 1048576 voxels along each axis");
-    requireOption(options.block == 0 || (options.block >= 4 && options.block <= 256), "block",
-                  std::to_string(options.block), "a whole number from 4 to 256");
-    requireOption(options.levels >= 0 && options.levels <= 8, "levels", std::to_string(options.levels),
-                  "a whole number from 1 to 8");
-    requireOption(options.drift >= 0, "drift", std::to_string(options.drift), "at least 0 voxels");
-    for (const auto& exemplar : exemplars)
-        for (int axis = 0; axis < 3; ++axis) {
-            const int length = exemplar->box().size()[axis];
-            if (options.size[axis] < length)
-                throw Error(ErrorCode::InvalidOption, "--size " + size +
-                                                          ": smaller than the exemplar's domain along " +
-                                                          char('x' + axis) + " (" + std::to_string(length) +
-                                                          " voxels); give at least that, or 1x");
-            if (options.block > length)
-                throw Error(ErrorCode::Unusable, "--block " + std::to_string(options.block) +
-                                                     ": larger than the exemplar, which has " +
-                                                     std::to_string(length) + " voxels along " +
-                                                     char('x' + axis));
-            if (options.block > 0 && options.size[axis] != length &&
-                options.border[std::size_t(axis)] == Border::Object && options.block * 4 > length)
-                throw Error(ErrorCode::Unusable,
-                            "--block " + std::to_string(options.block) +
-                                ": an object border needs an exemplar of four blocks along " +
-                                char('x' + axis) + ", it has " + std::to_string(length) + " voxels");
-        }
-}
-
 }  // namespace
-
-int deriveBlock(const Index3& exemplar, const BlockSynthesisOptions& options) {
-    const int block = std::min(16, longestBlock(exemplar, options.size, options.border) / 2 * 2);
-    if (block < 4)
-        throw Error(
-            ErrorCode::Unusable,
-            "the exemplar's domain of " + std::to_string(exemplar.x) + " x " + std::to_string(exemplar.y) +
-                " x " + std::to_string(exemplar.z) +
-                " voxels is too small for blocks of 4; use smaller voxels or a larger --exemplar-box");
-    return block;
-}
 
 BlockSynthesisResult synthesizeBlocks(const Fields& exemplars, const BlockSynthesisOptions& options,
                                       const RunContext& ctx) {
-    validate(exemplars, options);
+    validateSynthesis(exemplars, options);
     int block = options.block;
     if (block == 0) {
         block = 256;

@@ -1,6 +1,5 @@
 // Poisson-disk points by dart throwing over candidates on the dual-contoured surface: candidates in a
-// random order, each kept if no kept one is nearer than the spacing. Eight candidates a face of about a
-// square voxel leave no gap wider than twice the spacing (tested).
+// random order, each kept if no kept one is nearer than the spacing.
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/random.h"
 #include "libvdbsynth/vdb/coord.h"
@@ -18,6 +17,8 @@
 namespace vdbsynth {
 namespace {
 
+// Darts a square of the spacing: with 24 the points reach nine tenths of what darts can ever place.
+constexpr double kDarts = 24;
 constexpr std::uint32_t kPointsPurpose = 0x706f696e;
 
 struct Candidate {
@@ -33,7 +34,7 @@ std::vector<Candidate> throwCandidates(const Mesh& mesh, double spacing, std::ui
         const Vec3f u = mesh.points[triangles[i][1]] - a, v = mesh.points[triangles[i][2]] - a;
         const double area = double(length(cross(u, v))) / 2;
         Random random(seed, i, kPointsPurpose);
-        double count = 8 * area / (spacing * spacing);
+        double count = kDarts * area / (spacing * spacing);
         for (; count > 0; count -= 1) {
             if (count < 1 && random.uniform() >= count) break;
             double s = random.uniform(), t = random.uniform();

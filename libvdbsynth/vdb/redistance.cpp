@@ -58,42 +58,6 @@ void applySigns(openvdb::FloatGrid& distance, const openvdb::FloatGrid& field, f
     openvdb::tools::signedFloodFillWithValues(distance.tree(), halfWidth * voxelSize, -halfWidth * voxelSize);
 }
 
-bool onCap(const Vec3f& p, const IndexBox& domain, const CutFaces& cut, int face) {
-    const int axis = face / 2;
-    if (!cut[std::size_t(face)]) return false;
-    return face % 2 == 0 ? p[axis] < float(domain.min[axis]) - 0.25f
-                         : p[axis] > float(domain.max[axis]) + 0.25f;
-}
-
-template <typename Face>
-void dropCaps(std::vector<Face>& faces, const Mesh& mesh, const IndexBox& domain, const CutFaces& cut) {
-    const auto isCap = [&](const Face& f) {
-        for (int face = 0; face < 6; ++face)
-            if (std::all_of(f.begin(), f.end(),
-                            [&](std::uint32_t v) { return onCap(mesh.points[v], domain, cut, face); }))
-                return true;
-        return false;
-    };
-    faces.erase(std::remove_if(faces.begin(), faces.end(), isCap), faces.end());
-}
-
-// Faces far from the domain cannot matter and may be most of a large model.
-template <typename Face>
-void dropFar(std::vector<Face>& faces, const Mesh& mesh, const IndexBox& domain, float reach) {
-    const auto isFar = [&](const Face& f) {
-        for (int axis = 0; axis < 3; ++axis) {
-            bool low = true, high = true;
-            for (std::uint32_t v : f) {
-                low = low && mesh.points[v][axis] < float(domain.min[axis]) - reach;
-                high = high && mesh.points[v][axis] > float(domain.max[axis]) + reach;
-            }
-            if (low || high) return true;
-        }
-        return false;
-    };
-    faces.erase(std::remove_if(faces.begin(), faces.end(), isFar), faces.end());
-}
-
 }  // namespace
 
 FloatGridPtr rebuildLevelSet(const openvdb::FloatGrid& field, float halfWidth, const std::string& what,
@@ -113,21 +77,31 @@ FloatGridPtr rebuildLevelSet(const openvdb::FloatGrid& field, float halfWidth, c
 
 BrickField widenBand(const openvdb::FloatGrid& levelSet, const IndexBox& domain, const CutFaces& cut,
                      float halfWidth, const RunContext& ctx) {
-    Mesh mesh = zeroLevelInIndexSpace(levelSet, 0, ctx);
-    dropCaps(mesh.triangles, mesh, domain, cut);
-    dropCaps(mesh.quads, mesh, domain, cut);
-    dropFar(mesh.triangles, mesh, domain, halfWidth + 2);
-    dropFar(mesh.quads, mesh, domain, halfWidth + 2);
+    // What may matter: the domain and the band's reach around it. Beyond a cut face the last layer inside
+    // goes on.
+    const int reach = int(std::ceil(halfWidth)) + 2;
+    IndexBox known = domain;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!cut[std::size_t(2 * axis)]) known.min[axis] -= reach;
+        if (!cut[std::size_t(2 * axis + 1)]) known.max[axis] += reach;
+    }
+    const BrickField narrow =
+        gatherBricks(levelSet, known, float(1 / voxelSizeOf(levelSet)), kHalfWidth, ctx);
+    const IndexBox around{domain.min - known.min - Index3{reach, reach, reach},
+                          domain.max - known.min + Index3{reach, reach, reach}};
+    const BrickField open = BrickField::generate(around, ctx, [&](const IndexBox& brick, float* samples) {
+        narrow.readBox(brick.min, {BrickField::kSide, BrickField::kSide, BrickField::kSide}, samples);
+    });
+    const Mesh mesh = zeroLevelInIndexSpace(*scatterBricks(open, known.min, 1.f, kHalfWidth, ctx), 0, ctx);
     BrickField distance(IndexBox::fromSize(domain.size()), halfWidth);
     if (mesh.faceCount() > 0)
         distance = gatherBricks(*unsignedDistance(mesh, halfWidth, ctx), domain, 1.f, halfWidth, ctx);
-    // Signs come from the level set itself, whose inactive regions carry one too.
-    const BrickField sign = gatherBricks(levelSet, domain, float(1 / voxelSizeOf(levelSet)), 0.5f, ctx);
+    const Index3 shift = domain.min - known.min;
     return BrickField::generate(distance.box(), ctx, [&](const IndexBox& brick, float* samples) {
         constexpr Index3 side{BrickField::kSide, BrickField::kSide, BrickField::kSide};
         float signs[BrickField::kSamples];
         distance.readBox(brick.min, side, samples);
-        sign.readBox(brick.min, side, signs);
+        narrow.readBox(brick.min + shift, side, signs);
         for (int i = 0; i < BrickField::kSamples; ++i) samples[i] = signs[i] < 0 ? -samples[i] : samples[i];
     });
 }

@@ -21,9 +21,9 @@ FloatGridPtr rebuildLevelSet(const openvdb::FloatGrid& field, float halfWidth, c
 using CutFaces = std::array<bool, 6>;
 
 /// The level set over `domain` as distances [voxels] clamped to [-halfWidth, halfWidth], in a field that
-/// begins at 0. The band is widened by exact distances to the zero level. Zero-level faces that lie on a cut
-/// face of the domain (the caps of a clipped model) do not count: a block beside a cut sees what the
-/// material there looked like before the cut.
+/// begins at 0. The band is widened by exact distances to the zero level. At a cut face the caps of a clipped
+/// model do not count: the last layer of voxels inside is taken to go on beyond the face, so that a block
+/// beside a cut sees material, not the cut.
 /// @par Repeats same bits for any number of threads
 BrickField widenBand(const openvdb::FloatGrid& levelSet, const IndexBox& domain, const CutFaces& cut,
                      float halfWidth, const RunContext& ctx = {});

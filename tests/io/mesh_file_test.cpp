@@ -1,0 +1,200 @@
+#include "libvdbsynth/io/mesh_file.h"
+
+#include <catch2/catch.hpp>
+
+#include <cstring>
+
+#include "tests/support/makers.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace vdbsynth;
+
+namespace {
+
+template <typename T>
+std::string bytesOf(const T& value) {
+    return std::string(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+std::string binaryStl(std::uint32_t claimed, std::uint32_t written) {
+    std::string text(80, ' ');
+    text += bytesOf(claimed);
+    for (std::uint32_t i = 0; i < written; ++i) {
+        const float corners[12] = {0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, float(i)};
+        text += bytesOf(corners) + std::string(2, '\0');
+    }
+    return text;
+}
+
+const char* kObj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1/1 2/2 4/3\nf 2 3 4\nf -4 -1 -2\n";
+
+}  // namespace
+
+TEST_CASE("readMesh, writeMesh: what is written reads back, in every format", "[io][property]") {
+    const test::TemporaryFolder folder;
+    const Mesh mesh = test::sphereMesh(1.7, 2);
+    const MeshSummary before = summarize(mesh);
+    for (const char* name : {"a.obj", "a.ply", "a.stl", "a.off"}) {
+        INFO(name);
+        MeshFormat format{};
+        REQUIRE(meshFormatOf(name, format));
+        writeMesh(folder.path(name), format, mesh);
+        const MeshSummary after = summarize(readMesh(folder.path(name)));
+        CHECK(after.vertices == before.vertices);
+        CHECK(after.faces == before.faces);
+        CHECK(after.closedManifold());
+        CHECK(after.signedVolume == Approx(before.signedVolume).epsilon(1e-6));
+    }
+    MeshFormat format{};
+    CHECK_FALSE(meshFormatOf("a.vdb", format));
+}
+
+TEST_CASE("readMesh: OBJ with texture indices, negative indices and no last line end", "[io][fast]") {
+    const test::TemporaryFolder folder;
+    CHECK(summarize(readMesh(folder.write("t.obj", kObj))).closedManifold());
+    CHECK(readMesh(folder.write("e.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3")).triangles.size() == 1);
+}
+
+TEST_CASE("readMesh: OFF with colours, comments, polygons and an extra header", "[io][fast]") {
+    const test::TemporaryFolder folder;
+    const Mesh mesh =
+        readMesh(folder.write("c.off",
+                              "COFF # coloured\n5 1 0\n0 0 0 255 0 0 255\n1 0 0 1 1 1 1\n2 1 0 1 1 1 1\n1 2 "
+                              "0 1 1 1 1\n0 1 0 1 1 1 1\n5 0 1 2 3 4 0.5 0.5 0.5\n"));
+    CHECK(mesh.points.size() == 5);
+    CHECK(mesh.triangles.size() == 3);
+}
+
+TEST_CASE("readMesh: PLY in both byte orders with doubles, extra properties and lists", "[io][property]") {
+    const test::TemporaryFolder folder;
+    const std::string body =
+        "element vertex 3\nproperty double x\nproperty uchar red\nproperty double y\nproperty double "
+        "z\nproperty list uchar short extra\n"
+        "element face 1\nproperty list uchar int vertex_indices\nproperty uchar flag\nend_header\n";
+    for (bool big : {false, true}) {
+        std::string text =
+            std::string("ply\nformat binary_") + (big ? "big" : "little") + "_endian 1.0\n" + body;
+        const auto add = [&](auto value) {
+            std::string bytes = bytesOf(value);
+            if (big) std::reverse(bytes.begin(), bytes.end());
+            text += bytes;
+        };
+        for (int v = 0; v < 3; ++v) {
+            add(double(v));
+            add(std::uint8_t(9));
+            add(double(v * v));
+            add(0.25);
+            add(std::uint8_t(v));
+            for (int i = 0; i < v; ++i) add(std::int16_t(7));
+        }
+        add(std::uint8_t(3));
+        for (int i = 0; i < 3; ++i) add(std::int32_t(i));
+        add(std::uint8_t(1));
+        const Mesh mesh = readMesh(folder.write("d.ply", text));
+        REQUIRE(mesh.triangles.size() == 1);
+        CHECK(mesh.points[2].y == 4.f);
+        CHECK(mesh.points[1].z == 0.25f);
+    }
+    const Mesh ascii = readMesh(folder.write(
+        "a.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"));
+    CHECK(ascii.triangles.size() == 1);
+}
+
+TEST_CASE("readMesh: binary STL whose header says solid is still binary", "[io][fast]") {
+    const test::TemporaryFolder folder;
+    std::string text = binaryStl(2, 2);
+    text.replace(0, 5, "solid");
+    CHECK(readMesh(folder.write("s.stl", text)).triangles.size() == 2);
+}
+
+TEST_CASE("readMesh: corrupt files are refused in one line that names them", "[io][error]") {
+    const test::TemporaryFolder folder;
+    const std::string plyHead =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+        "z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    struct Bad {
+        const char* name;
+        std::string content, says;
+        ErrorCode code;
+    };
+    const std::vector<Bad> all{
+        {"a.obj", "v 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a.obj:1: a vertex has fewer", ErrorCode::BadData},
+        {"b.obj", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "not a finite number", ErrorCode::BadData},
+        {"c.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "uses vertex 8 of 3", ErrorCode::BadData},
+        {"d.obj", "v 0 0 0\n", "no faces", ErrorCode::EmptyInput},
+        {"e.obj", "", "the file is empty", ErrorCode::BadData},
+        {"f.off", "OFF\n353535235358 1 0\n", "more than the file can hold", ErrorCode::BadData},
+        {"g.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n", "truncated", ErrorCode::BadData},
+        {"h.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "vertex 3 of 3 does not exist",
+         ErrorCode::BadData},
+        {"i.off", "PLY\n", "not an OFF file", ErrorCode::BadData},
+        {"j.off", "OFF BINARY\n", "binary OFF is not supported", ErrorCode::BadData},
+        {"k.ply", plyHead + "0 0 0\n1 0 0\n0 1 0\n3 0 1 5\n", "uses vertex 5 of 3", ErrorCode::BadData},
+        {"l.ply", plyHead + "0.000000 0 0\n1.00000 0 0\n", "truncated", ErrorCode::BadData},
+        {"m.ply", plyHead + "0 0 0\n1 0 inf\n0 1 0\n3 0 1 2\n", "not a finite number", ErrorCode::BadData},
+        {"n.ply", "ply\nformat ascii 1.0\nelement vertex 3\n", "end_header", ErrorCode::BadData},
+        {"o.ply",
+         "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float "
+         "y\nproperty float z\nend_header\n",
+         "more than the file can hold", ErrorCode::BadData},
+        {"p.stl", binaryStl(5, 2), "claims 5 triangles", ErrorCode::BadData},
+        {"q.stl",
+         "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\nendfacet\nendsolid\n",
+         "fewer than three", ErrorCode::BadData},
+        {"r.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", "truncated", ErrorCode::BadData},
+        {"s.stl", "hello", "not an STL file", ErrorCode::BadData},
+    };
+    for (const Bad& bad : all) {
+        INFO(bad.name);
+        const test::Thrown thrown = test::thrownBy([&] { readMesh(folder.write(bad.name, bad.content)); });
+        CHECK(thrown.code == int(bad.code));
+        CHECK(test::contains(thrown.message, bad.says));
+        CHECK(test::contains(thrown.message, bad.name));
+        CHECK_FALSE(test::contains(thrown.message, "\n"));
+    }
+    CHECK(test::thrownBy([&] { readMesh(folder.path("missing.obj")); }).code == int(ErrorCode::Io));
+    CHECK(test::thrownBy([&] { readMesh("a.xyz"); }).code == int(ErrorCode::InvalidOption));
+}
+
+TEST_CASE("readMesh: a file cut anywhere is an error or a smaller mesh, never a crash", "[io][property]") {
+    const test::TemporaryFolder folder;
+    const Mesh mesh = test::sphereMesh(1, 1);
+    for (const char* name : {"a.obj", "a.ply", "a.stl", "a.off"}) {
+        MeshFormat format{};
+        meshFormatOf(name, format);
+        writeMesh(folder.path(name), format, mesh);
+        const std::string whole = test::contentOf(folder.path(name));
+        for (std::size_t i = 0; i < 120; ++i) {
+            const std::string cut = whole.substr(0, whole.size() * i / 120);
+            const test::Thrown thrown = test::thrownBy([&] { readMesh(folder.write(name, cut)); });
+            if (format != MeshFormat::Obj)
+                CHECK((thrown.code == int(ErrorCode::BadData) || thrown.code == int(ErrorCode::EmptyInput)));
+        }
+    }
+}
+
+TEST_CASE("readMesh: the sample meshes have the counts that their sources state", "[io][oracle]") {
+    const std::string bunny = test::sample("meshes/bunny.off");
+    if (bunny.empty()) {
+        WARN("samples absent: skipped");
+        return;
+    }
+    const MeshSummary s = summarize(readMesh(bunny));
+    CHECK(s.vertices == 34835);
+    CHECK(s.faces == 69666);
+    CHECK(s.closedManifold());
+    const MeshSummary cheese = summarize(readMesh(test::sample("meshes/cheese.off")));
+    CHECK(cheese.vertices == 8629);
+    CHECK(cheese.faces == 17786);
+    const MeshSummary bars = summarize(readMesh(test::sample("meshes/thingi10k-88566-grooved-bars.stl")));
+    CHECK(bars.vertices == 2624);
+    CHECK(bars.faces == 5344);
+    CHECK(summarize(readMesh(test::sample("meshes/stanford-bunny.obj"))).openEdges == 223);
+}
+
+TEST_CASE("writeMesh: a folder that does not exist is an Io error", "[io][error]") {
+    CHECK(test::thrownBy([] { writeMesh("/nowhere/a.obj", MeshFormat::Obj, test::sphereMesh(1, 0)); }).code ==
+          int(ErrorCode::Io));
+}

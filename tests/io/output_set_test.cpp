@@ -1,0 +1,62 @@
+#include "libvdbsynth/io/output_set.h"
+
+#include <catch2/catch.hpp>
+
+#include <fstream>
+
+#include "tests/support/makers.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace vdbsynth;
+
+TEST_CASE("OutputSet: nothing appears before commit, everything after", "[io][property]") {
+    const test::TemporaryFolder folder;
+    folder.write("a.txt", "old");
+    {
+        OutputSet outputs;
+        std::ofstream(outputs.add(folder.path("a.txt"))) << "new";
+        std::ofstream(outputs.add(folder.path("b.txt"))) << "second";
+        CHECK(test::contentOf(folder.path("a.txt")) == "old");
+        outputs.commit();
+    }
+    CHECK(test::contentOf(folder.path("a.txt")) == "new");
+    CHECK(test::contentOf(folder.path("b.txt")) == "second");
+    CHECK(folder.fileCount() == 2);
+}
+
+TEST_CASE("OutputSet: without commit the old file stays and the temporary goes", "[io][property]") {
+    const test::TemporaryFolder folder;
+    folder.write("a.txt", "old");
+    std::vector<std::string> told;
+    {
+        OutputSet outputs([&](const std::string& path) { told.push_back(path); });
+        std::ofstream(outputs.add(folder.path("a.txt"))) << "half";
+        CHECK(folder.fileCount() == 2);
+    }
+    CHECK(test::contentOf(folder.path("a.txt")) == "old");
+    CHECK(folder.fileCount() == 1);
+    REQUIRE(told.size() == 1);
+    CHECK(test::contains(told[0], "/.a.txt."));
+}
+
+TEST_CASE("OutputSet: stale temporaries of dead runs go, those of others stay", "[io][property]") {
+    const test::TemporaryFolder folder;
+    folder.write(".a.txt.999999999.tmp", "stale");
+    folder.write(".a.txt.1.tmp", "of a living process");
+    folder.write(".b.txt.999999999.tmp", "another output's");
+    OutputSet outputs;
+    outputs.add(folder.path("a.txt"));
+    CHECK(test::contentOf(folder.path(".a.txt.999999999.tmp")).empty());
+    CHECK(test::contentOf(folder.path(".a.txt.1.tmp")) == "of a living process");
+    CHECK(test::contentOf(folder.path(".b.txt.999999999.tmp")) == "another output's");
+}
+
+TEST_CASE("OutputSet: a directory, a missing folder and the same name twice are refused", "[io][error]") {
+    const test::TemporaryFolder folder;
+    OutputSet outputs;
+    CHECK(test::contains(test::thrownBy([&] { outputs.add("/tmp"); }).message, "is a directory"));
+    CHECK(test::contains(test::thrownBy([&] { outputs.add(folder.path("no/a.txt")); }).message,
+                         "does not exist"));
+    outputs.add(folder.path("a.txt"));
+    CHECK(test::thrownBy([&] { outputs.add(folder.path("a.txt")); }).code == int(ErrorCode::InvalidOption));
+}

@@ -1,0 +1,55 @@
+#include "libvdbsynth/pipeline/model.h"
+
+#include <openvdb/openvdb.h>
+#include <catch2/catch.hpp>
+
+#include "libvdbsynth/io/mesh_file.h"
+#include "libvdbsynth/pipeline/outputs.h"
+#include "tests/support/makers.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace vdbsynth;
+
+TEST_CASE("loadModel: a mesh by resolution or voxel size, with the default said", "[pipeline][property]") {
+    openvdb::initialize();
+    const test::TemporaryFolder folder;
+    writeMesh(folder.path("s.obj"), MeshFormat::Obj, test::sphereMesh(10, 3));
+    std::string note;
+    RunContext ctx;
+    ctx.onMessage = [&](MessageLevel level, const std::string& text) {
+        if (level == MessageLevel::Note) note = text;
+    };
+    ModelOptions options;
+    CHECK(voxelSizeOf(*loadModel(folder.path("s.obj"), options, ctx).grid) == Approx(20.0 / 128));
+    CHECK(test::contains(note, "128 voxels along the longest side"));
+    options.resolution = 40;
+    CHECK(voxelSizeOf(*loadModel(folder.path("s.obj"), options, ctx).grid) == Approx(0.5));
+    options.voxelSize = 0.8;
+    const LevelSet model = loadModel(folder.path("s.obj"), options, ctx);
+    CHECK(voxelSizeOf(*model.grid) == 0.8);
+    CHECK_FALSE(model.domainRecorded);
+    CHECK(model.domain == IndexBox{{-12, -12, -12}, {12, 12, 12}});
+}
+
+TEST_CASE("writeModel: one run writes every kind, the metadata and nothing before commit",
+          "[pipeline][property]") {
+    const test::TemporaryFolder folder;
+    writeMesh(folder.path("s.obj"), MeshFormat::Obj, test::sphereMesh(10, 3));
+    ModelOptions options;
+    options.resolution = 30;
+    const LevelSet model = loadModel(folder.path("s.obj"), options);
+    OutputSet outputs;
+    ModelOutputOptions outputOptions;
+    outputOptions.metadata = {{"vdbsynth:version", "1"}};
+    writeModel(model, {folder.path("o.vdb"), folder.path("o.stl"), folder.path("o.ply")}, outputOptions,
+               outputs);
+    CHECK(test::contentOf(folder.path("o.stl")).empty());
+    outputs.commit();
+    CHECK(summarize(readMesh(folder.path("o.stl"))).closedManifold());
+    CHECK(summarize(readMesh(folder.path("o.ply"))).closedManifold());
+    CHECK(readVdbModel(folder.path("o.vdb")).domain == model.domain);
+    CHECK(test::contains(test::thrownBy([] { requireOutputPaths({"a.doc"}); }).message,
+                         "a.doc: unknown extension"));
+    CHECK(test::contains(test::thrownBy([] { requireModelPath("a.doc"); }).message,
+                         "a.doc: unknown extension"));
+}

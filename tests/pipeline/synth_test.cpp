@@ -1,0 +1,181 @@
+#include "libvdbsynth/pipeline/synth.h"
+
+#include <openvdb/openvdb.h>
+#include <catch2/catch.hpp>
+
+#include "libvdbsynth/pipeline/make.h"
+#include "libvdbsynth/vdb/mask.h"
+#include "libvdbsynth/vdb/mesh_conversion.h"
+#include "libvdbsynth/vdb/vdb_file.h"
+#include "tests/support/makers.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace vdbsynth;
+
+namespace {
+
+LevelSet made(const char* kind, int resolution = 40, double feature = 0, double voxel = 1) {
+    openvdb::initialize();
+    MakeOptions options;
+    options.exemplar.kind = kind;
+    options.exemplar.resolution = resolution;
+    options.exemplar.feature = feature;
+    options.voxelSize = voxel;
+    return makeModel(options);
+}
+
+SynthOptions sized(double x, double y, double z) {
+    SynthOptions options;
+    options.size = {x, y, z};
+    return options;
+}
+
+}  // namespace
+
+TEST_CASE("synthesize: the result fills its domain, is valid, closed and about as full as the exemplar",
+          "[pipeline][property]") {
+    for (const char* kind : {"balls", "grid", "weave"}) {
+        INFO(kind);
+        const LevelSet exemplar = made(kind);
+        const SynthResult result = synthesize(exemplar, sized(2, 1.5, 1));
+        const IndexBox domain = result.model.domain;
+        CHECK(domain.min == exemplar.domain.min);
+        CHECK(domain.size() == Index3{80, 60, exemplar.domain.size().z});
+        CHECK(result.model.domainRecorded);
+        CHECK(domain.contains(solidBox(*result.model.grid, "result")));
+        CHECK(result.model.grid->background() == 3.f);
+        const BandQuality quality = measureBand(*result.model.grid);
+        CHECK(quality.gradientErrorMean < 0.1);
+        CHECK(quality.missingNeighbours == 0);
+        CHECK(summarize(levelSetToMesh(*result.model.grid)).closedManifold());
+        const double before = solidVoxels(*exemplar.grid) / double(exemplar.domain.volume());
+        CHECK(solidVoxels(*result.model.grid) / double(domain.volume()) == Approx(before).epsilon(0.2));
+    }
+}
+
+TEST_CASE("synthesize: an object keeps its faces and grows in between", "[pipeline][property]") {
+    openvdb::initialize();
+    LevelSet object;
+    object.grid = meshToLevelSet(test::boxMesh({-10, -6, -5}, {10, 6, 5}), 0.25, 3, "box");
+    object.domain = solidBox(*object.grid, "box");
+    stampLevelSet(object);
+    const SynthResult result = synthesize(object, sized(2, 1, 1));
+    const IndexBox solid = solidBox(*result.model.grid, "result");
+    CHECK(solid == result.model.domain);
+    CHECK(solid.size() == Index3{object.domain.size().x * 2, object.domain.size().y, object.domain.size().z});
+    CHECK(solidVoxels(*result.model.grid) == Approx(2 * solidVoxels(*object.grid)).epsilon(0.02));
+}
+
+TEST_CASE("synthesize: sizes in voxels, an exemplar box, a mask", "[pipeline][property]") {
+    const LevelSet exemplar = made("balls", 64);
+    SynthOptions options = sized(70, 50, 1);
+    options.multiple = {false, false, true};
+    options.exemplarBox = IndexBox{{4, 4, 4}, {43, 43, 35}};
+    options.exemplarMask = boxMask({{4, 4, 4}, {30, 43, 35}}, 1);
+    options.block = 8;
+    const SynthResult result = synthesize(exemplar, options);
+    CHECK(result.model.domain == IndexBox{{4, 4, 4}, {73, 53, 35}});
+    for (const Index3& source : result.map.patches.source) CHECK(source.x + 8 <= 27);
+    options.exemplarMask = boxMask({{4, 4, 4}, {6, 6, 6}}, 1);
+    CHECK(test::contains(test::thrownBy([&] { synthesize(exemplar, options); }).message, "--exemplar-mask"));
+}
+
+TEST_CASE("repeatSynthesis: the run's own exemplar gives the result back bit for bit, through a file",
+          "[pipeline][property]") {
+    const test::TemporaryFolder folder;
+    const LevelSet exemplar = made("balls");
+    for (bool draft : {false, true}) {
+        SynthOptions options = sized(2, 1.7, 1);
+        options.draft = draft;
+        const SynthResult result = synthesize(exemplar, options);
+        std::vector<GridPtr> grids = sourceMapGrids(result.map, *result.model.grid);
+        CHECK(grids.size() == 4);
+        grids.push_back(result.model.grid);
+        writeVdb(folder.path("m.vdb"), grids, {});
+        const LevelSet again = repeatSynthesis(readSourceMap(folder.path("m.vdb")), exemplar);
+        CHECK(levelSetHash(*again.grid) == levelSetHash(*result.model.grid));
+        CHECK(again.domain == result.model.domain);
+    }
+}
+
+TEST_CASE("repeatSynthesis: a finer exemplar gives the matching finer result", "[pipeline][property]") {
+    const LevelSet exemplar = made("grid", 40, 16, 1);
+    const SynthResult result = synthesize(exemplar, sized(2, 1, 1));
+    openvdb::FloatGrid::Ptr fine = meshToLevelSet(levelSetToMesh(*exemplar.grid), 0.5, 3, "fine");
+    LevelSet finer{fine, {}, false};
+    finer.domain = solidBox(*fine, "fine");
+    const LevelSet again = repeatSynthesis(result.map, finer);
+    CHECK(voxelSizeOf(*again.grid) == Approx(0.5));
+    CHECK(solidVoxels(*again.grid) / 8 == Approx(solidVoxels(*result.model.grid)).epsilon(0.05));
+    const LevelSet coarse = made("grid", 40, 16, 3);
+    CHECK(test::thrownBy([&] { repeatSynthesis(result.map, coarse); }).code == int(ErrorCode::ShapeMismatch));
+}
+
+TEST_CASE("sourceMapGrids: on nearly all of the band the result lies where the map says",
+          "[pipeline][property]") {
+    const LevelSet exemplar = made("balls", 48);
+    const SynthResult result = synthesize(exemplar, sized(2, 1, 1));
+    const std::vector<GridPtr> grids = sourceMapGrids(result.map, *result.model.grid);
+    const auto source = openvdb::gridPtrCast<openvdb::Vec3IGrid>(grids[0]);
+    const auto values = exemplar.grid->getConstAccessor();
+    std::size_t near = 0, all = 0;
+    for (auto it = source->cbeginValueOn(); it; ++it) {
+        const float value = result.model.grid->tree().getValue(it.getCoord());
+        if (std::abs(value) > 1) continue;
+        const openvdb::Vec3i from = *it;
+        CHECK(exemplar.domain.contains(Index3{from.x(), from.y(), from.z()}));
+        ++all;
+        if (std::abs(value - values.getValue({from.x(), from.y(), from.z()})) < 0.5f) ++near;
+    }
+    CHECK(double(near) / double(all) > 0.6);
+}
+
+TEST_CASE("readSourceMap: files without a map and broken maps are refused", "[pipeline][error]") {
+    const test::TemporaryFolder folder;
+    const LevelSet exemplar = made("grid");
+    writeVdb(folder.path("a.vdb"), {exemplar.grid}, {});
+    CHECK(test::contains(test::thrownBy([&] { readSourceMap(folder.path("a.vdb")); }).message,
+                         "no grid \"vote_source\""));
+    const SynthResult result = synthesize(exemplar, sized(2, 1, 1));
+    const std::vector<GridPtr> grids = sourceMapGrids(result.map, *result.model.grid);
+    for (const char* name : {"patch", "stride", "overhang", "kernel", "cut", "exemplar_box", "target_box",
+                             "band", "voxel_size"}) {
+        INFO(name);
+        const GridPtr broken = grids[2]->deepCopyGrid();
+        broken->insertMeta(std::string("vdbsynth:map:") + name, openvdb::StringMetadata("-7"));
+        writeVdb(folder.path("b.vdb"), {broken}, {});
+        CHECK(test::thrownBy([&] { readSourceMap(folder.path("b.vdb")); }).code == int(ErrorCode::BadData));
+    }
+    const auto outside = openvdb::gridPtrCast<openvdb::Vec3IGrid>(grids[2]->deepCopyGrid());
+    outside->tree().setValueOn({0, 0, 0}, openvdb::Vec3i(100000, 0, 0));
+    writeVdb(folder.path("c.vdb"), {outside}, {});
+    CHECK(test::contains(test::thrownBy([&] { readSourceMap(folder.path("c.vdb")); }).message,
+                         "outside the exemplar"));
+}
+
+TEST_CASE("synthesize: same bits for any number of threads", "[pipeline][determinism]") {
+    const LevelSet exemplar = made("fibres");
+    const auto run = [&](int threads) {
+        RunContext ctx;
+        ctx.threads = threads;
+        return levelSetHash(*synthesize(exemplar, sized(1.5, 2, 1), ctx).model.grid);
+    };
+    CHECK(run(1) == run(2));
+}
+
+TEST_CASE("synthesize: too small, too large, terabytes, cancelled", "[pipeline][error][cancel]") {
+    const LevelSet exemplar = made("grid");
+    CHECK(test::contains(test::thrownBy([&] { synthesize(exemplar, sized(0.5, 1, 1)); }).message,
+                         "smaller than the exemplar's domain (40)"));
+    SynthOptions options = sized(2, 2, 2);
+    options.block = 64;
+    CHECK(test::thrownBy([&] { synthesize(exemplar, options); }).code == int(ErrorCode::Unusable));
+    RunContext ctx;
+    ctx.maxMemory = 2000000000;
+    CHECK(test::thrownBy([&] { synthesize(exemplar, sized(1000, 1000, 1000), ctx); }).code ==
+          int(ErrorCode::Memory));
+    std::atomic<bool> cancel{true};
+    ctx.cancel = &cancel;
+    CHECK(test::thrownBy([&] { synthesize(exemplar, sized(2, 2, 2), ctx); }).code ==
+          int(ErrorCode::Cancelled));
+}

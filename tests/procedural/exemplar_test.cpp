@@ -1,0 +1,93 @@
+#include "libvdbsynth/procedural/exemplar.h"
+
+#include <catch2/catch.hpp>
+
+#include <set>
+
+#include "tests/support/makers.h"
+
+using namespace vdbsynth;
+
+namespace {
+
+ExemplarOptions optionsFor(const std::string& kind, int resolution = 48) {
+    ExemplarOptions options;
+    options.kind = kind;
+    options.resolution = resolution;
+    return options;
+}
+
+}  // namespace
+
+TEST_CASE("makeExemplar: every kind has solid and void, varies with the seed, repeats on any threads",
+          "[procedural][determinism]") {
+    for (const ExemplarKind& kind : exemplarKinds()) {
+        INFO(kind.name);
+        const auto run = [&](std::uint64_t seed, int threads) {
+            RunContext ctx;
+            ctx.seed = seed;
+            ctx.threads = threads;
+            return test::samplesOf(makeExemplar(optionsFor(kind.name), ctx).field);
+        };
+        const std::vector<float> one = run(1, 1);
+        CHECK(one == run(1, 2));
+        CHECK(one != run(2, 2));
+        const double solid =
+            double(std::count_if(one.begin(), one.end(), [](float v) { return v < 0; })) / double(one.size());
+        CHECK(solid > 0.04);
+        CHECK(solid < 0.75);
+    }
+}
+
+TEST_CASE("makeExemplar: exact kinds change by at most a voxel a voxel", "[procedural][property]") {
+    for (const ExemplarKind& kind : exemplarKinds()) {
+        const ExemplarField made = makeExemplar(optionsFor(kind.name));
+        if (!made.exact) continue;
+        INFO(kind.name);
+        float steepest = 0;
+        for (int x = 0; x < made.domain.max.x; ++x)
+            for (int y = 0; y < made.domain.max.y; ++y)
+                for (int z = 0; z < made.domain.max.z; ++z) {
+                    const float v = made.field.at({x, y, z});
+                    steepest = std::max({steepest, std::abs(made.field.at({x + 1, y, z}) - v),
+                                         std::abs(made.field.at({x, y + 1, z}) - v),
+                                         std::abs(made.field.at({x, y, z + 1}) - v)});
+                }
+        CHECK(steepest <= 1.0001f);
+    }
+}
+
+TEST_CASE("makeExemplar: lattice kinds of a larger domain begin with the smaller one's",
+          "[procedural][property]") {
+    for (const char* kind : {"grid", "fibres"}) {
+        const BrickField small = makeExemplar(optionsFor(kind, 32)).field,
+                         large = makeExemplar(optionsFor(kind, 48)).field;
+        for (int x = 0; x < 32; x += 3)
+            for (int y = 0; y < 32; y += 3)
+                for (int z = 0; z < 32; ++z)
+                    REQUIRE(small.at({x, y, z}) == Approx(large.at({x, y, z})).margin(1e-5));
+    }
+}
+
+TEST_CASE("makeExemplar: sizes, features and errors", "[procedural][error]") {
+    ExemplarOptions options = optionsFor("weave");
+    CHECK(makeExemplar(options).domain.size() == Index3{48, 48, 20});
+    options.size = {40, 32, 24};
+    CHECK(makeExemplar(options).domain.size() == Index3{40, 32, 24});
+    options.size = {40, 32, 4};
+    CHECK(test::contains(test::thrownBy([&] { makeExemplar(options); }).message, "--size 40,32,4"));
+    CHECK(test::contains(test::thrownBy([] { makeExemplar(optionsFor("cubes")); }).message,
+                         "unknown kind; one of balls, grid"));
+    CHECK(test::contains(test::thrownBy([] { makeExemplar(optionsFor("grid", 8)); }).message,
+                         "--resolution 8"));
+    options = optionsFor("grid");
+    options.feature = 2;
+    CHECK(test::contains(test::thrownBy([&] { makeExemplar(options); }).message, "--feature 2"));
+    RunContext ctx;
+    ctx.maxMemory = 1000000;
+    CHECK(test::thrownBy([&] { makeExemplar(optionsFor("grid", 512), ctx); }).code == int(ErrorCode::Memory));
+    std::atomic<bool> cancel{true};
+    ctx.maxMemory = 0;
+    ctx.cancel = &cancel;
+    CHECK(test::thrownBy([&] { makeExemplar(optionsFor("balls"), ctx); }).code == int(ErrorCode::Cancelled));
+}

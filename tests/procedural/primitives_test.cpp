@@ -1,0 +1,39 @@
+#include "libvdbsynth/procedural/primitives.h"
+
+#include <catch2/catch.hpp>
+
+#include "tests/support/makers.h"
+
+using namespace vdbsynth;
+
+TEST_CASE("Primitive: distances by hand", "[procedural][fast]") {
+    CHECK(ball({0, 0, 0}, 2).distance({5, 0, 0}) == Approx(3));
+    CHECK(capsule({0, 0, 0}, {10, 0, 0}, 1).distance({5, 3, 4}) == Approx(4));
+    CHECK(capsule({0, 0, 0}, {10, 0, 0}, 1).distance({13, 4, 0}) == Approx(4));
+    CHECK(torus({0, 0, 0}, {0, 0, 5}, 4, 1).distance({4, 0, 0}) == Approx(-1));
+    CHECK(torus({0, 0, 0}, {0, 0, 1}, 4, 1).distance({0, 0, 0}) == Approx(3));
+    CHECK(torus({0, 0, 0}, {0, 0, 1}, 4, 1).distance({0, 7, 4}) == Approx(4));
+}
+
+TEST_CASE("unionField: equals the least of all distances, clamped", "[procedural][oracle]") {
+    std::vector<Primitive> primitives;
+    for (std::uint64_t i = 0; i < 30; ++i) {
+        Random random(2, i);
+        const auto point = [&] {
+            return Vec3d{random.uniform(-5, 70), random.uniform(-5, 50), random.uniform(-5, 60)};
+        };
+        if (i % 3 == 0) primitives.push_back(ball(point(), random.uniform(2, 8)));
+        if (i % 3 == 1) primitives.push_back(capsule(point(), point(), random.uniform(1, 3)));
+        if (i % 3 == 2) primitives.push_back(torus(point(), point(), random.uniform(4, 9), 1.5));
+    }
+    const IndexBox box{{-6, -6, -6}, {69, 50, 60}};
+    const BrickField field = unionField(primitives, box, 4.f, {});
+    for (std::uint64_t i = 0; i < 4000; ++i) {
+        Random random(3, i);
+        const Index3 p{int(random.below(76)) - 6, int(random.below(57)) - 6, int(random.below(67)) - 6};
+        double nearest = 4;
+        for (const Primitive& primitive : primitives)
+            nearest = std::min(nearest, primitive.distance({double(p.x), double(p.y), double(p.z)}));
+        REQUIRE(double(field.at(p)) == Approx(std::max(nearest, -4.0)).margin(1e-5));
+    }
+}

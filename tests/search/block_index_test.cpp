@@ -1,0 +1,223 @@
+#include "libvdbsynth/search/block_index.h"
+
+#include <catch2/catch.hpp>
+
+#include "tests/support/makers.h"
+
+using namespace vdbsynth;
+
+namespace {
+
+struct Case {
+    std::string name;
+    BrickField field;
+};
+
+std::vector<Case> exemplars() {
+    std::vector<Case> cases;
+    cases.push_back({"noise", test::noiseField({18, 16, 20}, 1)});
+    cases.push_back({"smooth", test::ballsField({26, 24, 28}, 2, 4.f)});
+    cases.push_back({"mostly constant", test::ballsField({40, 32, 36}, 3, 2.f, 2)});
+    cases.push_back({"constant", BrickField(IndexBox::fromSize({20, 17, 18}), 2.f)});
+    cases.push_back({"periodic", test::periodicField({21, 20, 22}, 5)});
+    cases.push_back({"few values", test::fieldFrom({20, 20, 20}, [](const Index3& p) {
+                         return float(
+                             Random(8, std::uint64_t((p.x / 4 * 100 + p.y / 4) * 100 + p.z / 4)).below(2));
+                     })});
+    return cases;
+}
+
+// A query of one of several kinds: cut from the exemplar, with noise, from elsewhere, constant.
+std::vector<float> querySamples(const BrickField& field, int block, std::uint64_t seed) {
+    Random random(seed, 0);
+    const Index3 size = field.box().size();
+    const Index3 corner{int(random.below(std::uint32_t(size.x - block + 1))),
+                        int(random.below(std::uint32_t(size.y - block + 1))),
+                        int(random.below(std::uint32_t(size.z - block + 1)))};
+    std::vector<float> samples(std::size_t(block * block * block));
+    field.readBox(corner, {block, block, block}, samples.data());
+    const std::uint32_t kind = random.below(4);
+    for (float& sample : samples) {
+        if (kind == 1) sample += float(random.uniform(-0.3, 0.3));
+        if (kind == 2) sample = float(random.uniform(-2, 2));
+        if (kind == 3) sample = 2.f;
+    }
+    return samples;
+}
+
+std::vector<std::uint8_t> octantMask(int block, int octant) {
+    std::vector<std::uint8_t> known;
+    for (int x = 0; x < block; ++x)
+        for (int y = 0; y < block; ++y)
+            for (int z = 0; z < block; ++z)
+                known.push_back(((x >= block / 2) * 4 + (y >= block / 2) * 2 + (z >= block / 2)) != octant);
+    return known;
+}
+
+void requireSame(const std::vector<BlockMatch>& a, const std::vector<BlockMatch>& b) {
+    REQUIRE(a.size() == b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        REQUIRE(a[i].cost == b[i].cost);
+        REQUIRE(a[i].position == b[i].position);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("BlockIndex: the best K equal those of a linear scan, ties by position", "[search][property]") {
+    for (const Case& c : exemplars()) {
+        const auto field = std::make_shared<const BrickField>(c.field);
+        for (int block : {4, 5, 7, 8, 12}) {
+            BlockIndexOptions options;
+            options.block = block;
+            const BlockIndex index = BlockIndex::build(field, options);
+            for (std::uint64_t seed = 0; seed < 12; ++seed) {
+                INFO(c.name << ", block " << block << ", seed " << seed);
+                const std::vector<float> samples =
+                    querySamples(c.field, block, seed * 31 + std::uint64_t(block));
+                BlockQuery query;
+                query.samples = samples.data();
+                const int count = seed % 3 == 0 ? 1 : int(seed);
+                requireSame(index.match(query, count), matchBlocksLinearly(c.field, block, query, count));
+            }
+        }
+    }
+}
+
+TEST_CASE("BlockIndex: exact under any mask, inside any box of candidates, with any hints",
+          "[search][property]") {
+    for (const Case& c : exemplars()) {
+        const auto field = std::make_shared<const BrickField>(c.field);
+        for (int block : {6, 8}) {
+            BlockIndexOptions options;
+            options.block = block;
+            const BlockIndex index = BlockIndex::build(field, options);
+            for (std::uint64_t seed = 0; seed < 16; ++seed) {
+                INFO(c.name << ", block " << block << ", seed " << seed);
+                Random random(seed, 1);
+                const std::vector<float> samples = querySamples(c.field, block, seed * 17 + 5);
+                std::vector<std::uint8_t> known = octantMask(block, int(seed % 8));
+                if (seed % 4 == 1)
+                    for (std::uint8_t& k : known) k = random.below(2) != 0;
+                if (seed % 4 == 2) known.assign(known.size(), seed % 8 == 2);
+                BlockQuery query;
+                query.samples = samples.data();
+                query.known = known.data();
+                const Index3 last = index.positions().max;
+                if (seed % 2) {
+                    for (int axis = 0; axis < 3; ++axis) {
+                        const int a = int(random.below(std::uint32_t(last[axis] + 1))),
+                                  b = int(random.below(std::uint32_t(last[axis] + 1)));
+                        query.candidates.min[axis] = std::min(a, b);
+                        query.candidates.max[axis] = std::max(a, b);
+                    }
+                }
+                for (int h = 0; h < 3; ++h)
+                    query.hints.push_back(
+                        {int(random.below(40)) - 5, int(random.below(30)) - 5, int(random.below(30)) - 5});
+                requireSame(index.match(query, 3), matchBlocksLinearly(c.field, block, query, 3));
+            }
+        }
+    }
+}
+
+TEST_CASE("BlockIndex: with an exemplar mask only blocks wholly inside it are found", "[search][property]") {
+    const BrickField field = test::ballsField({28, 28, 28}, 5, 3.f);
+    const BrickField mask =
+        test::fieldFrom({28, 28, 28}, [](const Index3& p) { return p.x < 17 && p.y > 5 ? 1.f : 0.f; });
+    BlockIndexOptions options;
+    options.block = 8;
+    options.mask = &mask;
+    const BlockIndex index = BlockIndex::build(std::make_shared<const BrickField>(field), options);
+    for (std::uint64_t seed = 0; seed < 10; ++seed) {
+        const std::vector<float> samples = querySamples(field, 8, seed);
+        BlockQuery query;
+        query.samples = samples.data();
+        const std::vector<BlockMatch> found = index.match(query, 4);
+        requireSame(found, matchBlocksLinearly(field, 8, query, 4, &mask));
+        for (const BlockMatch& match : found) CHECK((match.position.x <= 9 && match.position.y >= 6));
+    }
+    const BrickField nothing(field.box(), 0.f);
+    options.mask = &nothing;
+    const test::Thrown thrown =
+        test::thrownBy([&] { BlockIndex::build(std::make_shared<const BrickField>(field), options); });
+    CHECK(thrown.code == int(ErrorCode::Unusable));
+    CHECK(test::contains(thrown.message, "--exemplar-mask"));
+}
+
+TEST_CASE("BlockIndex: constant regions and repeats are one node", "[search][property]") {
+    BlockIndexOptions options;
+    options.block = 8;
+    const auto constant =
+        std::make_shared<const BrickField>(BrickField(IndexBox::fromSize({40, 40, 40}), 1.f));
+    CHECK(BlockIndex::build(constant, options).nodeCount() == 1);
+    const auto periodic = std::make_shared<const BrickField>(test::periodicField({24, 24, 24}, 5));
+    CHECK(BlockIndex::build(periodic, options).nodeCount() == 125);
+    const auto half = std::make_shared<const BrickField>(
+        test::fieldFrom({48, 16, 16}, [](const Index3& p) { return p.x < 24 ? -3.f : 3.f; }));
+    // Two constant nodes and one for each way the step can lie in the block.
+    CHECK(BlockIndex::build(half, options).nodeCount() == 9);
+}
+
+TEST_CASE("BlockIndex: on a distance field most costs are never computed", "[search][property]") {
+    const auto field = std::make_shared<const BrickField>(test::ballsField({48, 48, 48}, 6, 8.f, 20));
+    BlockIndexOptions options;
+    options.block = 16;
+    const BlockIndex index = BlockIndex::build(field, options);
+    const BrickField other = test::ballsField({48, 48, 48}, 7, 8.f, 20);
+    BlockSearchCounts counts;
+    for (int i = 0; i < 10; ++i) {
+        std::vector<float> samples(16 * 16 * 16);
+        other.readBox({i * 3, i * 2, 30 - i}, {16, 16, 16}, samples.data());
+        BlockQuery query;
+        query.samples = samples.data();
+        index.match(query, 1, &counts);
+    }
+    CHECK(counts.exact < 10 * 33 * 33 * 33 / 50);
+}
+
+TEST_CASE("BlockIndex: the same index and answers for any number of threads", "[search][determinism]") {
+    const auto field = std::make_shared<const BrickField>(test::ballsField({40, 40, 40}, 9, 4.f));
+    const std::vector<float> samples = querySamples(*field, 8, 1);
+    std::vector<std::vector<BlockMatch>> answers;
+    std::vector<std::size_t> bytes;
+    for (int threads : {1, 2, 8}) {
+        RunContext ctx;
+        ctx.threads = threads;
+        BlockIndexOptions options;
+        options.block = 8;
+        const BlockIndex index = BlockIndex::build(field, options, ctx);
+        BlockQuery query;
+        query.samples = samples.data();
+        answers.push_back(index.match(query, 20));
+        bytes.push_back(index.memoryBytes());
+    }
+    requireSame(answers[0], answers[1]);
+    requireSame(answers[0], answers[2]);
+    CHECK(bytes[0] == bytes[1]);
+    CHECK(bytes[0] == bytes[2]);
+}
+
+TEST_CASE("BlockIndex: bad options and cancel", "[search][error][cancel]") {
+    const auto field = std::make_shared<const BrickField>(test::noiseField({10, 10, 10}, 1));
+    BlockIndexOptions options;
+    options.block = 3;
+    CHECK(test::contains(test::thrownBy([&] { BlockIndex::build(field, options); }).message,
+                         "--block 3: must be"));
+    options.block = 11;
+    const test::Thrown larger = test::thrownBy([&] { BlockIndex::build(field, options); });
+    CHECK(larger.code == int(ErrorCode::Unusable));
+    CHECK(test::contains(larger.message, "--block 11: larger than the exemplar"));
+    options.block = 10;
+    const BlockIndex whole = BlockIndex::build(field, options);
+    const std::vector<float> samples = test::samplesOf(*field);
+    BlockQuery query;
+    query.samples = samples.data();
+    CHECK(whole.match(query, 5).size() == 1);
+    CHECK(whole.match(query).front().cost == 0);
+    CHECK(test::thrownBy([&] { whole.match(query, 0); }).code == int(ErrorCode::InvalidOption));
+    std::atomic<bool> cancel{true};
+    RunContext ctx;
+    ctx.cancel = &cancel;
+    CHECK(test::thrownBy([&] { BlockIndex::build(field, options, ctx); }).code == int(ErrorCode::Cancelled));
+}

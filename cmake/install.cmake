@@ -1,0 +1,16 @@
+# Installs the tool, the library, its headers and a package that find_package(vdbsynth) finds. The component
+# `pipeline` adds the rooms that speak OpenVDB and finds it.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+install(TARGETS vdb_synth RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS vdbsynth EXPORT vdbsynthTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS vdbsynth_pipeline EXPORT vdbsynthPipelineTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(EXPORT vdbsynthTargets NAMESPACE vdbsynth:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/vdbsynth)
+install(EXPORT vdbsynthPipelineTargets NAMESPACE vdbsynth:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/vdbsynth)
+install(DIRECTORY libvdbsynth/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/libvdbsynth FILES_MATCHING PATTERN "*.h")
+configure_package_config_file(cmake/vdbsynthConfig.cmake.in ${PROJECT_BINARY_DIR}/vdbsynthConfig.cmake
+                              INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/vdbsynth)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/vdbsynthConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/vdbsynthConfig.cmake ${PROJECT_BINARY_DIR}/vdbsynthConfigVersion.cmake
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/vdbsynth)

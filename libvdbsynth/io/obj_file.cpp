@@ -1,36 +1,43 @@
-// OBJ through tinyobjloader, the one file that sees it. It reads "v 1 2" as (1, 2, 0) and "nan" as 0
-// without a word, so vertex lines are checked first.
+// OBJ through tinyobjloader, the one file that sees it. It reads "v 1 2" as (1, 2, 0) and "nan" as 0 without
+// a word, and rounds coordinates to another last bit than the C library does, so vertices are read here and
+// tinyobjloader is asked for the faces.
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/mesh_readers.h"
 #include "libvdbsynth/io/text_scanner.h"
 
 #include <tiny_obj_loader.h>
 
+#include <cmath>
 #include <sstream>
 
 namespace vdbsynth {
 namespace {
 
-void checkVertexLines(const std::string& path, const std::string& content) {
+std::vector<Vec3f> readVertexLines(const std::string& path, const std::string& content) {
+    std::vector<Vec3f> points;
     TextScanner scanner(path, content);
     while (!scanner.atEnd()) {
-        if (scanner.word() == "v")
-            for (int i = 0; i < 3; ++i) {
+        if (scanner.word() == "v") {
+            Vec3f p;
+            for (int axis = 0; axis < 3; ++axis) {
                 const std::string_view number = scanner.wordOnLine();
-                float value = 0;
                 if (number.empty()) scanner.fail("a vertex has fewer than three coordinates");
-                if (!parseReal(number, value))
+                if (!parseReal(number, p[axis]))
                     scanner.fail("\"" + std::string(number.substr(0, 40)) + "\" is not a number");
-                if (!(value - value == 0.f)) scanner.fail("a coordinate is not a finite number");
+                if (!std::isfinite(p[axis])) scanner.fail("a coordinate is not a finite number");
             }
+            points.push_back(p);
+        }
         scanner.skipLine();
     }
+    return points;
 }
 
 }  // namespace
 
 Mesh readObj(const std::string& path, const std::string& content) {
-    checkVertexLines(path, content);
+    Mesh mesh;
+    mesh.points = readVertexLines(path, content);
     tinyobj::attrib_t attributes;
     std::vector<tinyobj::shape_t> shapes;
     std::vector<tinyobj::material_t> materials;
@@ -42,10 +49,6 @@ Mesh readObj(const std::string& path, const std::string& content) {
         problem = problem.substr(0, problem.find('\n'));
         throw Error(ErrorCode::BadData, path + ": " + (problem.empty() ? "not a valid OBJ file" : problem));
     }
-    Mesh mesh;
-    for (std::size_t i = 0; i + 2 < attributes.vertices.size(); i += 3)
-        mesh.points.push_back(
-            {attributes.vertices[i], attributes.vertices[i + 1], attributes.vertices[i + 2]});
     std::vector<std::uint32_t> corners;
     for (const tinyobj::shape_t& shape : shapes) {
         std::size_t at = 0;

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 #include <utility>
 
@@ -20,6 +21,16 @@ namespace {
 
 [[noreturn]] void failIo(const std::string& path, const std::string& what) {
     throw Error(ErrorCode::Io, path + ": " + what + ": " + std::strerror(errno));
+}
+
+// A killed process whose parent does not collect it stays in the table as a zombie; it writes no more.
+bool stillRuns(pid_t process) {
+    if (::kill(process, 0) != 0 && errno == ESRCH) return false;
+    std::ifstream status("/proc/" + std::to_string(process) + "/stat");
+    std::string line;
+    if (!std::getline(status, line)) return true;
+    const std::size_t name = line.rfind(") ");
+    return name == std::string::npos || (line[name + 2] != 'Z' && line[name + 2] != 'X');
 }
 
 // Removes ".NAME.<pid>.tmp" of processes that no longer run.
@@ -36,7 +47,7 @@ void removeStale(const std::string& folder, const std::string& name) {
             digits.find_first_not_of("0123456789") != std::string::npos)
             continue;
         const pid_t process = pid_t(std::stol(digits));
-        if (::kill(process, 0) != 0 && errno == ESRCH) std::filesystem::remove(entry.path(), ignored);
+        if (!stillRuns(process)) std::filesystem::remove(entry.path(), ignored);
     }
 }
 

@@ -33,14 +33,14 @@ void checkEnclosed(const openvdb::FloatGrid& grid, const Mesh& mesh, double voxe
         add(q[0], q[1], q[2]);
         add(q[0], q[2], q[3]);
     }
-    // A solid thinner than a voxel everywhere may honestly vanish; that is its own message.
-    if (enclosed > 0 && enclosed >= 0.5 * std::abs(volume)) return;
+    // Voxel centres that lie on a sheet by chance count as inside: up to a voxel's depth of its area.
+    const bool crumbs = enclosed < area * voxelSize;
+    if (!crumbs && enclosed >= 0.5 * std::abs(volume)) return;
     const MeshSummary summary = summarize(mesh);
-    if (summary.openEdges == 0 && enclosed == 0 && std::abs(volume) > 0 &&
-        std::abs(volume) / area < voxelSize)
-        throw Error(
-            ErrorCode::Unusable,
-            name + ": thinner than a voxel everywhere; use a smaller --voxel-size or a larger --resolution");
+    if (summary.openEdges == 0 && enclosed > 0 && enclosed >= 0.5 * std::abs(volume)) return;
+    if (summary.openEdges == 0 && std::abs(volume) > 0 && std::abs(volume) < area * voxelSize)
+        throw Error(ErrorCode::Unusable,
+                    name + ": thinner than a voxel; use a smaller --voxel-size or a larger --resolution");
     throw Error(ErrorCode::Unusable,
                 name + ": " + std::to_string(summary.openEdges) +
                     " open edges; close the mesh (the level set encloses " +

@@ -77,7 +77,7 @@ Json vdbInfo(const std::string& path, Run& run) {
             {"gradient_error_mean", quality.gradientErrorMean},
             {"gradient_error_p99", quality.gradientErrorP99},
             {"band_gaps", quality.missingNeighbours},
-            {"valid", quality.finite && quality.gradientErrorMean < 0.05 && quality.missingNeighbours == 0}};
+            {"valid", quality.finite && quality.gradientErrorMean < 0.15 && quality.missingNeighbours == 0}};
     } catch (const Error& error) {
         if (error.code() == ErrorCode::Cancelled) throw;
         info["model"] = nullptr;

@@ -1,0 +1,21 @@
+# Each class of the Python tests is one ctest case.
+set(CLI_ENVIRONMENT VDBSYNTH_PROGRAM=$<TARGET_FILE:vdb_synth> VDBSYNTH_SAMPLES=${VDBSYNTH_SAMPLES} VDBSYNTH_SOURCE=${PROJECT_SOURCE_DIR}
+    PYTHONDONTWRITEBYTECODE=1)
+function(add_cli_test file)
+  foreach(class ${ARGN})
+    add_test(NAME "cli: ${file} ${class}" COMMAND /usr/bin/python3 ${PROJECT_SOURCE_DIR}/tests/cli/${file}.py ${class})
+    set_tests_properties("cli: ${file} ${class}" PROPERTIES ENVIRONMENT "${CLI_ENVIRONMENT}" LABELS cli TIMEOUT 600)
+  endforeach()
+endfunction()
+
+add_cli_test(path_test MainPath Determinism Words)
+add_cli_test(error_test BadOptions BadFiles Disk Signals)
+add_cli_test(rival_test Rival)
+
+add_test(NAME "lint: stairs" COMMAND /usr/bin/python3 ${PROJECT_SOURCE_DIR}/tools/dev/check_stairs.py ${PROJECT_SOURCE_DIR})
+add_test(NAME "lint: format" COMMAND ${PROJECT_SOURCE_DIR}/tools/dev/check_format.sh)
+add_test(NAME "lint: headers" COMMAND ${PROJECT_SOURCE_DIR}/tools/dev/check_headers.sh ${CMAKE_CXX_COMPILER})
+set_tests_properties("lint: stairs" "lint: format" "lint: headers" PROPERTIES LABELS lint SKIP_RETURN_CODE 77)
+
+add_test(NAME "consumer: find_package" COMMAND ${PROJECT_SOURCE_DIR}/tests/consumer/run.sh ${CMAKE_COMMAND} ${PROJECT_BINARY_DIR})
+set_tests_properties("consumer: find_package" PROPERTIES LABELS consumer TIMEOUT 300)

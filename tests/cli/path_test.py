@@ -1,0 +1,143 @@
+"""The main path, end to end, and what every output promises."""
+import json
+import subprocess
+import unittest
+
+from support import PROGRAM, SOURCE, CliTest, sample
+
+
+class MainPath(CliTest):
+    def test_make_synth_render(self):
+        self.ok("make", "grid", "grid.vdb", "--resolution", 40)
+        self.ok("synth", "grid.vdb", "-o", "more.vdb", "-o", "more.obj", "-o", "more.ply", "--size", "2x,2x,1x")
+        self.ok("render", "more.vdb", "-o", "more.png")
+        self.assertTrue(self.read("more.png").startswith(b"\x89PNG"))
+        for mesh in ("more.obj", "more.ply"):
+            info = json.loads(self.ok("info", mesh, "--json").stdout)
+            self.assertTrue(info["closed_manifold"], info)
+        info = json.loads(self.ok("info", "more.vdb", "--json").stdout)
+        self.assertEqual(info["model"]["domain"], "0,0,0,79,79,39")
+        self.assertTrue(info["model"]["domain_recorded"])
+        self.assertTrue(info["model"]["valid"], info["model"])
+        self.assertEqual(info["grids"][0]["name"], "surface")
+        self.assertEqual(info["grids"][0]["class"], "level set")
+        self.assertEqual(info["grids"][0]["background"], 3)
+
+    def test_real_mesh(self):
+        cheese = sample("meshes/cheese.off")
+        self.ok("synth", cheese, "-o", "more.vdb", "-o", "more.stl", "--resolution", 64,
+                "--exemplar-box", "-31,-31,-28,0,0,-1", "--size", "2x,2x,1x")
+        info = json.loads(self.ok("info", "more.vdb", "--json").stdout)
+        self.assertEqual(info["model"]["domain"], "-31,-31,-28,32,32,-1")
+        self.assertTrue(info["model"]["valid"], info["model"])
+        self.assertTrue(json.loads(self.ok("info", "more.stl", "--json").stdout)["closed_manifold"])
+
+    def test_plain_call_and_draft(self):
+        self.ok("make", "balls", "balls.vdb", "--resolution", 40)
+        self.ok("synth", "balls.vdb", "-o", "a.vdb", "--size", "2x,2x,2x")
+        self.ok("synth", "balls.vdb", "-o", "b.vdb", "--size", "2x,2x,2x", "--draft", "--report", "b.json")
+        report = json.loads(self.read("b.json"))
+        self.assertGreater(report["counts"]["matches"], 10)
+        self.assertGreater(report["peak_bytes"], 1e6)
+        self.assertTrue(all(s["seconds"] >= 0 and s["name"] for s in report["stages"]))
+
+    def test_repeat_gives_the_same_surface(self):
+        self.ok("make", "weave", "w.vdb", "--resolution", 40)
+        self.ok("synth", "w.vdb", "-o", "a.vdb", "--source-map", "--size", "2x,1x,1x")
+        self.ok("synth", "w.vdb", "-o", "b.vdb", "--source-map", "map.vdb", "--size", "2x,1x,1x")
+        for number, source in enumerate(("a.vdb", "map.vdb")):
+            self.ok("repeat", source, "w.vdb", "-o", f"r{number}.obj", "-o", f"r{number}.vdb")
+        self.ok("convert", "a.vdb", "-o", "a.obj")
+        self.assertEqual(self.read("a.obj"), self.read("r0.obj"))
+        self.assertEqual(self.read("a.obj"), self.read("r1.obj"))
+
+    def test_match_prints_json(self):
+        self.ok("make", "sponge", "s.vdb", "--resolution", 32)
+        result = self.ok("match", "s.vdb", "s.vdb", "--block", 8, "--at", "5,6,7", "--count", 3)
+        found = json.loads(result.stdout)["matches"]
+        self.assertEqual(found[0], {"position": [5, 6, 7], "cost": 0.0, "rms_voxels": 0.0})
+        self.assertEqual(len(found), 3)
+
+    def test_crop_mask_points_slice(self):
+        self.ok("make", "balls", "b.vdb", "--resolution", 32)
+        self.ok("crop", "b.vdb", "-o", "c.vdb", "--box", "4,4,4,27,27,19")
+        self.assertEqual(json.loads(self.ok("info", "c.vdb", "--json").stdout)["model"]["domain"], "4,4,4,27,27,19")
+        for words in (["box", "--box", "-4,4,4,20,20,19"], ["ball", "--center", "9,9,9", "--radius", "6"],
+                      ["inside", "b.vdb"], ["range", "b.vdb", "--range", "-1,1"]):
+            self.ok("mask", *words, "-o", "m.vdb")
+            self.assertGreater(json.loads(self.ok("info", "m.vdb", "--json").stdout)["grids"][0]["active_voxels"], 500)
+        self.ok("mask", "box", "--box", "0,0,0,31,31,31", "-o", "m.vdb")
+        self.ok("synth", "b.vdb", "-o", "s.vdb", "--size", "40,32,32", "--exemplar-mask", "m.vdb", "--block", 8)
+        self.ok("convert", "b.vdb", "-o", "p.ply", "--as", "points", "--spacing", 2)
+        self.assertIn(b"property float nx", self.read("p.ply"))
+        self.ok("render", "b.vdb", "-o", "s.png", "--slice", "x=0.5", "--size", "200x160")
+
+    def test_every_kind_is_made_and_varies(self):
+        for kind in "balls grid chainmail fibres foam sponge terrain weave".split():
+            for seed in (0, 1):
+                self.ok("make", kind, f"{kind}{seed}.vdb", "--resolution", 24, "--seed", seed)
+            self.assertNotEqual(self.read(f"{kind}0.vdb"), self.read(f"{kind}1.vdb"))
+
+
+class Determinism(CliTest):
+    def test_bytes_do_not_depend_on_threads_path_or_time(self):
+        self.ok("make", "fibres", "f.vdb", "--resolution", 32)
+        outputs = []
+        for threads, name in ((1, "a"), (2, "b"), (7, "a")):
+            self.ok("synth", "f.vdb", "-o", f"{name}.vdb", "-o", f"{name}.ply", "--source-map", "--size", "2x,1.5x,1x", "--threads", threads)
+            self.ok("render", f"{name}.vdb", "-o", f"{name}.png", "--size", "200x150", "--threads", threads)
+            outputs.append([self.read(f"{name}.{kind}") for kind in ("vdb", "ply", "png")])
+        self.assertEqual(outputs[0], outputs[1])
+        self.assertEqual(outputs[0], outputs[2])
+
+    def test_a_report_replays_its_run(self):
+        self.ok("make", "grid", "g.vdb", "--resolution", 32)
+        self.ok("synth", "g.vdb", "-o", "a.vdb", "--size", "2x,1x,1x", "--block", 8, "--seed", 5, "--report", "r.json")
+        first = self.read("a.vdb")
+        self.ok("synth", "--config", "r.json")
+        self.assertEqual(first, self.read("a.vdb"))
+        self.ok("synth", "--config", "r.json", "--seed", 6, "-o", "b.vdb")
+        self.assertNotEqual(first, self.read("b.vdb"))
+
+    def test_metadata_tells_what_made_it(self):
+        self.ok("make", "grid", "g.vdb", "--resolution", 24, "--seed", 3)
+        raw = self.read("g.vdb")
+        for text in (b"vdbsynth:version", b"vdbsynth:options", b"vdbsynth:seed", b"vdbsynth:inputs"):
+            self.assertIn(text, raw)
+        self.assertNotIn(self.folder.encode(), raw)
+
+
+class Words(CliTest):
+    def test_help_equals_the_documentation(self):
+        for path in sorted((SOURCE / "docs/cli").glob("*.txt")):
+            self.assertEqual(self.ok(path.stem, "--help").stdout, path.read_text(), path)
+        overview = self.ok("--help").stdout
+        for path in (SOURCE / "docs/cli").glob("*.txt"):
+            self.assertIn(f"  {path.stem} ", overview)
+
+    def test_version_in_both_spellings(self):
+        self.assertEqual(self.ok("--version").stdout, self.ok("-version").stdout)
+        self.assertIn("OpenVDB", self.ok("make", "--version").stdout)
+
+    def test_progress_json_is_one_object_a_line(self):
+        result = self.ok("make", "sponge", "s.vdb", "--resolution", 32, "--progress", "json")
+        lines = [json.loads(line) for line in result.stderr.splitlines()]
+        self.assertGreater(len(lines), 2)
+        for line in lines:
+            self.assertEqual(set(line), {"stage", "done", "total"})
+        self.assertEqual(result.stdout, "")
+
+    def test_quiet_says_nothing_and_default_resolution_is_said(self):
+        self.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n")
+        self.assertIn("128 voxels along the longest side", self.ok("convert", "t.obj", "-o", "t.vdb").stderr)
+        self.assertEqual(self.ok("convert", "t.obj", "-o", "t.vdb", "-q").stderr, "")
+        self.assertIn("voxel size", self.ok("convert", "t.obj", "-o", "t.vdb", "--resolution", 20, "-v").stderr)
+
+    def test_nothing_gpl_is_linked(self):
+        libraries = subprocess.run(["ldd", PROGRAM], capture_output=True, text=True, check=True).stdout
+        for name in ("fftw", "gsl", "cgal", "readline", "gmp", "mpfr", "poppler"):
+            self.assertNotIn(f"lib{name}", libraries)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# Every public header compiles alone, and outside vdb/ and pipeline/ without a third party's header.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+export compiler=${1:-c++}
+check() {
+  # `-MD` writes what was included while the same run checks the syntax.
+  local dependencies
+  dependencies=$(mktemp)
+  echo "#include \"$1\"" | "$compiler" -std=c++17 -I. -fsyntax-only -Wall -Wextra -MD -MF "$dependencies" -x c++ - ||
+    { echo "$1 does not compile alone"; return 1; }
+  case "$1" in
+    libvdbsynth/vdb/*|libvdbsynth/pipeline/*) ;;
+    *) if grep -qE '/(openvdb|tbb|boost|nlohmann)/|png\.h' "$dependencies"; then echo "$1 drags in a third party"; return 1; fi ;;
+  esac
+  rm -f "$dependencies"
+}
+export -f check
+# The four left out are openly OpenVDB's: helpers inside vdb/.
+ls libvdbsynth/*/*.h | grep -vE 'vdb/(coord|interrupter|trilinear|wall)\.h' | xargs -P "$(nproc)" -I{} bash -c 'check {}'
+echo "every public header compiles alone"

@@ -1,0 +1,67 @@
+#!/usr/bin/python3
+"""Checks the stairs: no room includes a room above it, and OpenVDB and the other heavy libraries are seen
+only where they may be. Prints each breach as FILE:LINE and exits with 1 if there is one."""
+import pathlib
+import re
+import sys
+
+# A room may include itself and what stands in its list.
+BELOW = {}
+for room, direct in [
+    ("base", []), ("math", ["base"]), ("geometry", ["math"]), ("grid", ["math"]),
+    ("io", ["geometry", "grid"]), ("vdb", ["io"]), ("procedural", ["grid"]), ("search", ["grid"]),
+    ("synth", ["search", "grid"]), ("pipeline", ["synth", "procedural", "vdb", "io"]), ("tools", ["pipeline"]),
+]:
+    BELOW[room] = {room}.union(*[BELOW[d] for d in direct]) if direct else {room}
+
+# Which rooms may see which third party.
+ALLOWED = {
+    "openvdb/": {"vdb", "pipeline"}, "tbb/": {"base"}, "xxhash.h": {"base"}, "png.h": {"io"},
+    "tiny_obj_loader.h": {"io"}, "boost/": {"tools"}, "nlohmann/": {"tools"},
+}
+ONE_FILE = {"png.h", "tiny_obj_loader.h", "xxhash.h", "boost/"}
+
+
+def main(root):
+    breaches = []
+    users = {}
+    for path in sorted([*root.glob("libvdbsynth/**/*.h"), *root.glob("libvdbsynth/**/*.cpp"),
+                        *root.glob("tools/vdb_synth/*.h"), *root.glob("tools/vdb_synth/*.cpp")]):
+        relative = path.relative_to(root)
+        room = relative.parts[1] if relative.parts[0] == "libvdbsynth" else "tools"
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            match = re.match(r'\s*#include\s*[<"]([^">]+)[">]', line)
+            if not match:
+                continue
+            include = match.group(1)
+            where = f"{relative}:{number}"
+            inner = re.match(r"libvdbsynth/(\w+)/", include)
+            if inner and inner.group(1) not in BELOW[room]:
+                breaches.append(f"{where}: {room} may not include {inner.group(1)}")
+            if include.startswith("tools/") and room != "tools":
+                breaches.append(f"{where}: the library may not include the tool")
+            for prefix, rooms in ALLOWED.items():
+                if include.startswith(prefix):
+                    users.setdefault(prefix, set()).add(str(relative))
+                    if room not in rooms:
+                        breaches.append(f"{where}: {prefix} belongs to {', '.join(sorted(rooms))} only")
+            if include.startswith("openvdb/") and room == "pipeline" and path.suffix == ".h":
+                breaches.append(f"{where}: headers of pipeline speak of grids through vdb/vdb_fwd.h")
+    for prefix in ONE_FILE:
+        if len(users.get(prefix, [])) > 1:
+            breaches.append(f"{prefix} is included by {', '.join(sorted(users[prefix]))}; one file is enough")
+    for room in BELOW:
+        headers = list((root / "libvdbsynth" / room).glob("*.h"))
+        if len(headers) > 13:
+            breaches.append(f"libvdbsynth/{room}: {len(headers)} headers; split the room")
+    banned = re.compile(r"random_device|\bs?rand\(|using namespace")
+    for path in root.glob("libvdbsynth/**/*.h"):
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            if banned.search(line):
+                breaches.append(f"{path.relative_to(root)}:{number}: {line.strip()}")
+    print("\n".join(breaches) if breaches else "the stairs hold")
+    return 1 if breaches else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve()))

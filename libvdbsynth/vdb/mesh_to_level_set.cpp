@@ -33,8 +33,8 @@ void checkEnclosed(const openvdb::FloatGrid& grid, const Mesh& mesh, double voxe
         add(q[0], q[1], q[2]);
         add(q[0], q[2], q[3]);
     }
-    // Voxel centres that lie on a sheet by chance count as inside: up to a voxel's depth of its area.
-    const bool crumbs = enclosed < area * voxelSize;
+    // Voxel centres that lie on a sheet by chance count as inside: about a voxel of depth over its area.
+    const bool crumbs = enclosed < 1.5 * area * voxelSize;
     if (!crumbs && enclosed >= 0.5 * std::abs(volume)) return;
     const MeshSummary summary = summarize(mesh);
     if (summary.openEdges == 0 && enclosed > 0 && enclosed >= 0.5 * std::abs(volume)) return;

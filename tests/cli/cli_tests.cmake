@@ -10,6 +10,7 @@ endfunction()
 
 add_cli_test(path_test MainPath Determinism Words)
 add_cli_test(error_test BadOptions BadFiles Disk Signals)
+add_cli_test(readme_test Readme)
 add_cli_test(rival_test Rival)
 
 add_test(NAME "lint: stairs" COMMAND /usr/bin/python3 ${PROJECT_SOURCE_DIR}/tools/dev/check_stairs.py ${PROJECT_SOURCE_DIR})

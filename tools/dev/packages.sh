@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# Installs the Debian 12 packages that are missing. Usage: packages.sh build|test|all
+set -euo pipefail
+build=(g++ cmake ninja-build ccache libopenvdb-dev libboost-iostreams-dev libtbb-dev libboost-program-options-dev libtinyobjloader-dev
+       nlohmann-json3-dev libpng-dev libxxhash-dev zlib1g-dev)
+test=(catch2 python3 procps)
+# Rivals to compare with, linters.
+all=(libopenvdb-tools python3-openvdb python3-numpy clang-format)
+
+case "${1:-build}" in
+  build) wanted=("${build[@]}") ;;
+  test) wanted=("${build[@]}" "${test[@]}") ;;
+  all) wanted=("${build[@]}" "${test[@]}" "${all[@]}") ;;
+  *) echo "usage: $0 build|test|all" >&2; exit 2 ;;
+esac
+
+missing=()
+for package in "${wanted[@]}"; do
+  dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q '^install ok installed$' || missing+=("$package")
+done
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+root=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || { echo "error: these packages are missing and neither root nor sudo is there to install them: ${missing[*]}" >&2; exit 1; }
+  root=(sudo)
+fi
+echo "installing: ${missing[*]}"
+export DEBIAN_FRONTEND=noninteractive
+"${root[@]}" apt-get update -qq
+"${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"

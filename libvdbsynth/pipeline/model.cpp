@@ -5,9 +5,11 @@
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/vdb/mesh_conversion.h"
+#include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace vdbsynth {
@@ -79,6 +81,21 @@ LevelSet loadModel(const std::string& path, const ModelOptions& options, const R
     read.gridName = options.grid;
     read.iso = options.iso;
     return readVdbModel(path, read, ctx);
+}
+
+LevelSet withHalfWidth(const LevelSet& model, double halfWidth, const RunContext& ctx) {
+    requireOption(halfWidth >= 1.5 && halfWidth <= 100, "half-width", std::to_string(halfWidth),
+                  "from 1.5 to 100 voxels");
+    const double present = halfWidthOf(*model.grid);
+    if (std::abs(present - halfWidth) < 1e-3 * halfWidth) return model;
+    const ThreadLimit limit(ctx);
+    message(ctx, MessageLevel::Detail,
+            "the band of " + std::to_string(present) + " voxels a side is re-distanced to " +
+                std::to_string(halfWidth));
+    LevelSet result = model;
+    result.grid = rebuildLevelSet(*model.grid, float(halfWidth), "the model", ctx);
+    stampLevelSet(result);
+    return result;
 }
 
 }  // namespace vdbsynth

@@ -31,4 +31,9 @@ void requireModelPath(const std::string& path);
 /// @par Repeats  same bits for any number of threads
 LevelSet loadModel(const std::string& path, const ModelOptions& options = {}, const RunContext& ctx = {});
 
+/// The model with a band of `halfWidth` voxels a side: itself if it has that, else re-distanced from its zero
+/// level.
+/// @throw Error InvalidOption (--half-width), EmptyInput (no surface)
+LevelSet withHalfWidth(const LevelSet& model, double halfWidth, const RunContext& ctx = {});
+
 }  // namespace vdbsynth

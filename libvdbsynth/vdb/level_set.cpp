@@ -93,6 +93,7 @@ std::size_t activeVoxels(const openvdb::FloatGrid& grid) {
 void stampLevelSet(LevelSet& levelSet) {
     levelSet.grid->setName(kSurfaceName);
     levelSet.grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    levelSet.grid->setSaveFloatAsHalf(false);  // a file read at half precision is not written so
     levelSet.grid->removeMeta(kDomainKey);
     if (levelSet.domainRecorded)
         levelSet.grid->insertMeta(kDomainKey, openvdb::StringMetadata(boxText(levelSet.domain)));

@@ -53,3 +53,18 @@ TEST_CASE("writeModel: one run writes every kind, the metadata and nothing befor
     CHECK(test::contains(test::thrownBy([] { requireModelPath("a.doc"); }).message,
                          "a.doc: unknown extension"));
 }
+
+TEST_CASE("withHalfWidth: another band, the same surface; its own band is left alone",
+          "[pipeline][property]") {
+    const test::TemporaryFolder folder;
+    writeMesh(folder.path("s.obj"), MeshFormat::Obj, test::sphereMesh(10, 4));
+    ModelOptions options;
+    options.resolution = 40;
+    const LevelSet model = loadModel(folder.path("s.obj"), options);
+    CHECK(withHalfWidth(model, 3).grid == model.grid);
+    const LevelSet wide = withHalfWidth(model, 6);
+    CHECK(halfWidthOf(*wide.grid) == Approx(6));
+    CHECK(solidVoxels(*wide.grid) == Approx(solidVoxels(*model.grid)).epsilon(0.005));
+    CHECK(wide.grid->getConstAccessor().getValue({24, 0, 0}) == Approx(2).margin(0.05));
+    CHECK(test::contains(test::thrownBy([&] { withHalfWidth(model, 1); }).message, "--half-width"));
+}

@@ -30,7 +30,8 @@ void convert(Run& run) {
     outputs.adaptivity = run.arguments.real("adaptivity", 0, 0, 1);
     outputs.spacing = run.arguments.real("spacing", 1, 0.25, 100);
     requireModelPath(run.arguments.inputs[0]);
-    const LevelSet model = run.load(run.arguments.inputs[0], modelOptions);
+    const LevelSet model =
+        withHalfWidth(run.load(run.arguments.inputs[0], modelOptions), modelOptions.halfWidth, run.context);
     outputs.metadata = run.metadata();
     writeModel(model, paths, outputs, run.outputs(), run.context);
     run.count("active_voxels", activeVoxels(*model.grid));

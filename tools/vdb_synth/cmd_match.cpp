@@ -49,11 +49,12 @@ void match(Run& run) {
         matches.push_back({{"position", {found.position.x, found.position.y, found.position.z}},
                            {"cost", found.cost},
                            {"rms_voxels", std::sqrt(found.cost)}});
-    const nlohmann::json json{{"block", options.block},
-                              {"at", {options.at.x, options.at.y, options.at.z}},
-                              {"known_samples", result.known},
-                              {"matches", matches}};
-    printLine(json.dump(2));
+    // One match a line: thousands are easier to read and to split.
+    std::string text = "{\n  \"block\": " + std::to_string(options.block) +
+                       ",\n  \"at\": " + nlohmann::json{options.at.x, options.at.y, options.at.z}.dump() +
+                       ",\n  \"known_samples\": " + std::to_string(result.known) + ",\n  \"matches\": [";
+    for (std::size_t i = 0; i < matches.size(); ++i) text += (i ? ",\n    " : "\n    ") + matches[i].dump();
+    printLine(text + "\n  ]\n}");
     run.count("bounds_computed", result.counts.nodes);
     run.count("exact_costs_computed", result.counts.exact);
     run.finish();

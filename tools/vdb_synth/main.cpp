@@ -154,7 +154,7 @@ const std::vector<Option>& commonOptions() {
         {"output", "FILE", "where the result goes, kind by extension; may be given several times", true, 'o'},
         {"voxel-size", "W", "side of a voxel for meshes (world)"},
         {"resolution", "N", "voxels along the longest side of a mesh, default 128"},
-        {"half-width", "V", "half-width of the narrow band made from a mesh (voxels), default 3"},
+        {"half-width", "V", "half-width of the narrow band (voxels), default 3"},
         {"grid", "NAME", "which grid of a VDB file"},
         {"iso", "VALUE", "a fog volume is solid above this value"},
         {"threads", "N", "number of threads, default one per core; results do not depend on it"},

@@ -7,7 +7,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 "$cmake" --install "$build" --prefix "$scratch/prefix" >/dev/null
 for core in OFF ON; do
-  "$cmake" -S "$here" -B "$scratch/$core" -DCORE_ONLY=$core -DCMAKE_PREFIX_PATH="$scratch/prefix" -DCMAKE_BUILD_TYPE=Release
+  "$cmake" -G Ninja -S "$here" -B "$scratch/$core" -DCORE_ONLY=$core -DCMAKE_PREFIX_PATH="$scratch/prefix" -DCMAKE_BUILD_TYPE=Release
   "$cmake" --build "$scratch/$core"
   "$scratch/$core/consumer"
 done

@@ -50,8 +50,9 @@ MeshSummary summarize(const Mesh& mesh);
 
 /// Splits vertices so that no edge has more than two faces and the faces around a vertex form one fan.
 /// At an edge of 2k faces each face is paired with the neighbour that lies across the solid, so sheets
-/// that touch come apart instead of crossing; vertices that were split move `gap` into their own sheet,
-/// so that formats without indices (stl) do not weld them again. Positions change nowhere else.
+/// that touch come apart instead of crossing; vertices that were split, or that lie on the very same place as
+/// another, move `gap` into their own sheet, so that formats without indices (stl) do not weld them again.
+/// Positions change nowhere else.
 /// @param mesh  closed (every edge has an even number of faces, half in each direction)
 /// @param gap   [world], the move of a split vertex, at least 0
 /// @return number of vertices added

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 namespace vdbsynth {
 namespace {
@@ -111,6 +113,16 @@ void pairAround(Sets& sets, const Mesh& mesh, const Faces& faces, const std::vec
     }
 }
 
+// Marks vertices that lie on the very same place as another: the two sides of a wall thinner than a cell.
+void markCoincident(const std::vector<Vec3f>& points, std::vector<char>& marks) {
+    std::vector<std::uint32_t> order(points.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto key = [&](std::uint32_t i) { return std::make_tuple(points[i].x, points[i].y, points[i].z); };
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    for (std::size_t i = 1; i < order.size(); ++i)
+        if (key(order[i]) == key(order[i - 1])) marks[order[i]] = marks[order[i - 1]] = 1;
+}
+
 }  // namespace
 
 std::size_t separateNonManifold(Mesh& mesh, float gap) {
@@ -143,18 +155,25 @@ std::size_t separateNonManifold(Mesh& mesh, float gap) {
         }
     }
     const std::size_t added = mesh.points.size() - before;
-    if (added == 0) return 0;
-    // A split vertex moves a little towards the middle of its own fan.
+    for (std::size_t v = before; v < mesh.points.size(); ++v) split.push_back(1);
+    markCoincident(mesh.points, split);
+    if (std::find(split.begin(), split.end(), 1) == split.end()) return 0;
+    // A split vertex moves a little towards the middle of its own fan and behind its face: two sheets on the
+    // same place part by the second where the first is the same for both.
     std::vector<Vec3d> towards(mesh.points.size());
     const std::vector<Vec3f> points = mesh.points;
     for (std::uint32_t face = 0; face + 1 < faces.first.size(); ++face) {
-        Vec3d centre;
         const std::uint32_t begin = faces.first[face], end = faces.first[face + 1];
-        for (std::uint32_t c = begin; c < end; ++c) centre = centre + cast<double>(points[faces.vertex[c]]);
+        const auto corner = [&](std::uint32_t c) { return cast<double>(points[faces.vertex[c]]); };
+        Vec3d centre;
+        for (std::uint32_t c = begin; c < end; ++c) centre = centre + corner(c);
+        centre = centre * (1.0 / (end - begin));
+        const Vec3d normal = cross(corner(begin + 1) - corner(begin), corner(end - 1) - corner(begin));
         for (std::uint32_t c = begin; c < end; ++c) {
-            if (!split[faces.vertex[c]]) continue;
             const std::uint32_t v = newVertex[sets.find(c)];
-            towards[v] = towards[v] + (centre * (1.0 / (end - begin)) - cast<double>(points[v]));
+            if (split[v])
+                towards[v] = towards[v] + (centre - corner(c)) -
+                             normalized(normal) * (0.5 * length(centre - corner(c)));
         }
     }
     for (std::size_t v = 0; v < mesh.points.size(); ++v)

@@ -112,7 +112,7 @@ public:
           mContent(content),
           mAt(header.bytes),
           mEncoding(header.encoding),
-          mScanner(path, std::string_view(content).substr(header.bytes), '\0') {}
+          mScanner(path, content, '\0', header.bytes) {}
 
     double number(Type type) {
         if (mEncoding == Encoding::Ascii)

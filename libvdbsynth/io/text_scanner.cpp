@@ -35,8 +35,8 @@ std::string readWholeFile(const std::string& path) {
     return text;
 }
 
-TextScanner::TextScanner(const std::string& path, std::string_view text, char comment)
-    : mPath(path), mText(text), mComment(comment) {}
+TextScanner::TextScanner(const std::string& path, std::string_view text, char comment, std::size_t start)
+    : mPath(path), mText(text), mAt(start), mComment(comment) {}
 
 void TextScanner::skipSpace(bool acrossLines) {
     while (mAt < mText.size()) {

@@ -15,7 +15,8 @@ std::string readWholeFile(const std::string& path);
 class TextScanner {
 public:
     /// Both are borrowed for the scanner's life.
-    TextScanner(const std::string& path, std::string_view text, char comment = '#');
+    /// @param start  where in the text to begin; lines are still counted from its beginning
+    TextScanner(const std::string& path, std::string_view text, char comment = '#', std::size_t start = 0);
 
     /// True at the end of the text (comments and white space skipped).
     bool atEnd();

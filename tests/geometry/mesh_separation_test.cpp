@@ -56,3 +56,11 @@ TEST_CASE("separateNonManifold: a manifold mesh stays as it is", "[geometry][deg
     REQUIRE(mesh.points.size() == before.size());
     for (std::size_t i = 0; i < before.size(); ++i) CHECK(length(mesh.points[i] - before[i]) == 0);
 }
+
+TEST_CASE("separateNonManifold: two sides of a wall on the very same place part", "[geometry][property]") {
+    // A box squashed flat: front and back share positions, not vertices.
+    Mesh mesh = test::boxMesh({0, 0, 0}, {1, 1, 0});
+    CHECK(separateNonManifold(mesh, 0.01f) == 0);
+    for (std::size_t i = 0; i < mesh.points.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) CHECK(length(mesh.points[i] - mesh.points[j]) > 0.001f);
+}

@@ -1,61 +1,40 @@
 #include "libvdbsynth/vdb/redistance.h"
 
-#include "libvdbsynth/base/error.h"
-#include "libvdbsynth/base/parallel.h"
-#include "libvdbsynth/vdb/bricks.h"
-#include "libvdbsynth/vdb/coord.h"
-#include "libvdbsynth/vdb/interrupter.h"
-#include "libvdbsynth/vdb/wall.h"
-#include "libvdbsynth/vdb/zero_level.h"
-
 #include <openvdb/openvdb.h>
-#include <openvdb/tools/MeshToVolume.h>
-#include <openvdb/tools/SignedFloodFill.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/grid/mesh_distance.h"
+#include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/zero_level.h"
+
 namespace vdbsynth {
 namespace {
 
-using Leaf = openvdb::FloatTree::LeafNodeType;
+constexpr Index3 kBrickSize{BrickField::kSide, BrickField::kSide, BrickField::kSide};
 
-// Unsigned distances [voxels] in index space, active where below `halfWidth`.
-openvdb::FloatGrid::Ptr unsignedDistance(const Mesh& mesh, float halfWidth, const RunContext& ctx) {
-    std::vector<openvdb::Vec3s> points;
-    points.reserve(mesh.points.size());
-    for (const Vec3f& p : mesh.points) points.emplace_back(p.x, p.y, p.z);
-    std::vector<openvdb::Vec3I> triangles;
-    for (const Triangle& t : mesh.triangles) triangles.emplace_back(t[0], t[1], t[2]);
-    std::vector<openvdb::Vec4I> quads;
-    for (const Quad& q : mesh.quads) quads.emplace_back(q[0], q[1], q[2], q[3]);
-    const auto transform = openvdb::math::Transform::createLinearTransform(1.0);
-    const ThreadLimit limit(ctx);
-    openvdb::FloatGrid::Ptr grid = behindWall(ErrorCode::Unusable, "distance to the surface", [&] {
-        Interrupter interrupter(ctx);
-        return openvdb::tools::meshToUnsignedDistanceField<openvdb::FloatGrid>(
-            static_cast<openvdb::util::NullInterrupter&>(interrupter), *transform, points, triangles, quads,
-            halfWidth);
-    });
-    throwIfCancelled(ctx);
-    return grid;
+// Voxels within `reach` of a mesh in index space.
+IndexBox boxAround(const Mesh& mesh, int reach) {
+    IndexBox box{{1 << 28, 1 << 28, 1 << 28}, {-(1 << 28), -(1 << 28), -(1 << 28)}};
+    for (const Vec3f& p : mesh.points)
+        for (int axis = 0; axis < 3; ++axis) {
+            box.min[axis] = std::min(box.min[axis], int(std::floor(p[axis])));
+            box.max[axis] = std::max(box.max[axis], int(std::ceil(p[axis])));
+        }
+    return box.expanded(reach);
 }
 
-// Gives every stored voxel the sign of `field`, scales to world units and fills the rest.
-void applySigns(openvdb::FloatGrid& distance, const openvdb::FloatGrid& field, float voxelSize,
-                float halfWidth, const RunContext& ctx) {
-    std::vector<Leaf*> leaves;
-    distance.tree().getNodes(leaves);
-    parallelFor(ctx, leaves.size(), 32, [&](std::size_t begin, std::size_t end) {
-        const openvdb::FloatGrid::ConstAccessor sign = field.getConstAccessor();
-        for (std::size_t i = begin; i < end; ++i)
-            for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
-                const float magnitude = leaves[i]->isValueOn(n) ? leaves[i]->getValue(n) : halfWidth;
-                const bool inside = sign.getValue(leaves[i]->offsetToGlobalCoord(n)) < 0;
-                leaves[i]->setValueOnly(n, (inside ? -magnitude : magnitude) * voxelSize);
-            }
+// Distances with the signs of another field, both read at an offset; the result begins at 0.
+BrickField withSigns(const BrickField& distance, const Index3& distanceOffset, const BrickField& sign,
+                     const Index3& signOffset, const Index3& size, const RunContext& ctx) {
+    return BrickField::generate(IndexBox::fromSize(size), ctx, [&](const IndexBox& brick, float* samples) {
+        float signs[BrickField::kSamples];
+        distance.readBox(brick.min + distanceOffset, kBrickSize, samples);
+        sign.readBox(brick.min + signOffset, kBrickSize, signs);
+        for (int i = 0; i < BrickField::kSamples; ++i) samples[i] = signs[i] < 0 ? -samples[i] : samples[i];
     });
-    openvdb::tools::signedFloodFillWithValues(distance.tree(), halfWidth * voxelSize, -halfWidth * voxelSize);
 }
 
 }  // namespace
@@ -66,8 +45,11 @@ FloatGridPtr rebuildLevelSet(const openvdb::FloatGrid& field, float halfWidth, c
     const Mesh mesh = zeroLevelInIndexSpace(field, 0, ctx);
     if (mesh.faceCount() == 0) throw Error(ErrorCode::EmptyInput, what + " has no surface");
     stage.advance();
-    openvdb::FloatGrid::Ptr grid = unsignedDistance(mesh, halfWidth, ctx);
-    applySigns(*grid, field, float(voxelSizeOf(field)), halfWidth, ctx);
+    const IndexBox box = boxAround(mesh, int(std::ceil(halfWidth)) + 1);
+    const BrickField distance = meshDistance(mesh, box, halfWidth, ctx);
+    const BrickField sign = gatherBricks(field, box, float(1 / voxelSizeOf(field)), kHalfWidth, ctx);
+    const BrickField values = withSigns(distance, box.min, sign, {0, 0, 0}, box.size(), ctx);
+    const FloatGridPtr grid = scatterBricks(values, box.min, float(voxelSizeOf(field)), halfWidth, ctx);
     grid->setTransform(field.transform().copy());
     grid->setName(kSurfaceName);
     grid->setGridClass(openvdb::GRID_LEVEL_SET);
@@ -90,27 +72,18 @@ BrickField widenBand(const openvdb::FloatGrid& levelSet, const IndexBox& domain,
     const IndexBox around{domain.min - known.min - Index3{reach, reach, reach},
                           domain.max - known.min + Index3{reach, reach, reach}};
     const BrickField open = BrickField::generate(around, ctx, [&](const IndexBox& brick, float* samples) {
-        narrow.readBox(brick.min, {BrickField::kSide, BrickField::kSide, BrickField::kSide}, samples);
+        narrow.readBox(brick.min, kBrickSize, samples);
     });
     const Mesh mesh = zeroLevelInIndexSpace(*scatterBricks(open, known.min, 1.f, kHalfWidth, ctx), 0, ctx);
-    BrickField distance(IndexBox::fromSize(domain.size()), halfWidth);
-    if (mesh.faceCount() > 0)
-        distance = gatherBricks(*unsignedDistance(mesh, halfWidth, ctx), domain, 1.f, halfWidth, ctx);
-    const Index3 shift = domain.min - known.min;
-    return BrickField::generate(distance.box(), ctx, [&](const IndexBox& brick, float* samples) {
-        constexpr Index3 side{BrickField::kSide, BrickField::kSide, BrickField::kSide};
-        float signs[BrickField::kSamples];
-        distance.readBox(brick.min, side, samples);
-        narrow.readBox(brick.min + shift, side, signs);
-        for (int i = 0; i < BrickField::kSamples; ++i) samples[i] = signs[i] < 0 ? -samples[i] : samples[i];
-    });
+    const BrickField distance = meshDistance(mesh, domain, halfWidth, ctx);
+    return withSigns(distance, domain.min, narrow, domain.min - known.min, domain.size(), ctx);
 }
 
 BrickField closeField(const BrickField& field, const IndexBox& domain, const CutFaces& cut, float limit,
                       const RunContext& ctx) {
     constexpr int kMargin = 2;
     return BrickField::generate(domain.expanded(kMargin), ctx, [&](const IndexBox& brick, float* samples) {
-        field.readBox(brick.min, {BrickField::kSide, BrickField::kSide, BrickField::kSide}, samples);
+        field.readBox(brick.min, kBrickSize, samples);
         for (int x = brick.min.x; x <= brick.max.x; ++x)
             for (int y = brick.min.y; y <= brick.max.y; ++y)
                 for (int z = brick.min.z; z <= brick.max.z; ++z, ++samples) {

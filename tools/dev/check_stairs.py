@@ -8,7 +8,7 @@ import sys
 # A room may include itself and what stands in its list.
 BELOW = {}
 for room, direct in [
-    ("base", []), ("math", ["base"]), ("geometry", ["math"]), ("grid", ["math"]),
+    ("base", []), ("math", ["base"]), ("geometry", ["math"]), ("grid", ["geometry"]),
     ("io", ["geometry", "grid"]), ("vdb", ["io"]), ("procedural", ["grid"]), ("search", ["grid"]),
     ("synth", ["search", "grid"]), ("pipeline", ["synth", "procedural", "vdb", "io"]), ("tools", ["pipeline"]),
 ]:

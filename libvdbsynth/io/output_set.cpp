@@ -70,30 +70,67 @@ OutputSet::~OutputSet() {
     for (const Entry& entry : mEntries) ::unlink(entry.temporary.c_str());
 }
 
-std::string OutputSet::add(const std::string& path) {
+void OutputSet::reserve(const std::string& path) {
     for (const Entry& entry : mEntries)
-        if (entry.path == path) throw Error(ErrorCode::InvalidOption, path + ": named as an output twice");
+        if (entry.path == path) return;
+    open(path);
+}
+
+std::string OutputSet::add(const std::string& path) {
+    for (Entry& entry : mEntries) {
+        if (entry.path != path) continue;
+        if (entry.taken) throw Error(ErrorCode::InvalidOption, path + ": named as an output twice");
+        entry.taken = true;
+        return entry.temporary;
+    }
+    open(path);
+    mEntries.back().taken = true;
+    return mEntries.back().temporary;
+}
+
+void OutputSet::open(const std::string& path) {
     struct stat status {};
-    if (::stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode))
-        throw Error(ErrorCode::Io, path + ": is a directory; name a file");
-    const std::string folder = folderOf(path), name = fileNameOf(path);
+    std::string target = path;
+    if (::stat(path.c_str(), &status) == 0) {
+        if (S_ISDIR(status.st_mode)) throw Error(ErrorCode::Io, path + ": is a directory; name a file");
+        if (!S_ISREG(status.st_mode))
+            throw Error(ErrorCode::Io, path + ": is not a regular file; name a file to write");
+        // Through a link, the file it points to is the output.
+        std::error_code problem;
+        const std::filesystem::path real = std::filesystem::canonical(path, problem);
+        if (!problem) target = real.string();
+    }
+    const std::string folder = folderOf(target), name = fileNameOf(target);
     if (::stat(folder.c_str(), &status) != 0)
         throw Error(ErrorCode::Io, path + ": the folder " + folder + " does not exist");
+    std::error_code problem;
+    const std::string unique = (std::filesystem::canonical(folder, problem) / name).string();
+    for (const Entry& entry : mEntries)
+        if (entry.unique == unique)
+            throw Error(ErrorCode::InvalidOption,
+                        path + ": the same file as " + entry.path + "; named as an output twice");
     removeStale(folder, name);
     const std::string temporary = folder + "/." + name + "." + std::to_string(::getpid()) + ".tmp";
     if (mOnTemporary) mOnTemporary(temporary);
-    const int file = ::open(temporary.c_str(), O_CREAT | O_WRONLY | O_TRUNC | O_CLOEXEC, 0666);
+    ::unlink(temporary.c_str());
+    const int file = ::open(temporary.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (file < 0) failIo(path, "cannot be written");
     ::close(file);
-    mEntries.push_back({path, temporary});
-    return temporary;
+    mEntries.push_back({path, target, unique, temporary, false});
+}
+
+std::string OutputSet::withoutTemporaries(std::string text) const {
+    for (const Entry& entry : mEntries)
+        for (std::size_t at; (at = text.find(entry.temporary)) != std::string::npos;)
+            text.replace(at, entry.temporary.size(), entry.path);
+    return text;
 }
 
 void OutputSet::commit() {
     for (const Entry& entry : mEntries) syncToDisk(entry.temporary, entry.path);
     while (!mEntries.empty()) {
         const Entry entry = mEntries.front();
-        if (::rename(entry.temporary.c_str(), entry.path.c_str()) != 0)
+        if (::rename(entry.temporary.c_str(), entry.target.c_str()) != 0)
             failIo(entry.path, "cannot be written");
         mEntries.erase(mEntries.begin());
     }

@@ -19,16 +19,25 @@ public:
     OutputSet& operator=(const OutputSet&) = delete;
 
     /// Registers an output. @return the path to write instead
-    /// @throw Error Io (no such folder, no permission, a directory), InvalidOption (named twice)
+    /// @throw Error Io (no such folder, no permission, not a regular file), InvalidOption (named twice, also
+    /// by another path)
     std::string add(const std::string& path);
+    /// Makes the temporary of an output that `add` will ask for later, so that an unwritable place is known
+    /// before the work.
+    /// @throw Error as add
+    void reserve(const std::string& path);
+    /// A message with the outputs' names where it has those of their temporaries.
+    std::string withoutTemporaries(std::string text) const;
     /// Syncs all temporaries to disk, then renames them in the order they were added.
     /// @throw Error Io; nothing was renamed unless a rename itself failed
     void commit();
 
 private:
     struct Entry {
-        std::string path, temporary;
+        std::string path, target, unique, temporary;
+        bool taken;
     };
+    void open(const std::string& path);
     std::vector<Entry> mEntries;
     std::function<void(const std::string&)> mOnTemporary;
 };

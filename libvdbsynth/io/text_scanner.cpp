@@ -24,6 +24,7 @@ std::string readWholeFile(const std::string& path) {
     struct stat status {};
     if (::stat(path.c_str(), &status) != 0) throw Error(ErrorCode::Io, path + ": no such file");
     if (S_ISDIR(status.st_mode)) throw Error(ErrorCode::Io, path + ": is a directory; name a file");
+    if (!S_ISREG(status.st_mode)) throw Error(ErrorCode::Io, path + ": is not a regular file");
     std::ifstream file(path, std::ios::binary);
     if (!file) throw Error(ErrorCode::Io, path + ": cannot be read: " + std::strerror(errno));
     std::string text;

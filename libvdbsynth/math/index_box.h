@@ -29,7 +29,12 @@ struct IndexBox {
 
     Index3 size() const { return {max.x - min.x + 1, max.y - min.y + 1, max.z - min.z + 1}; }
     bool empty() const { return max.x < min.x || max.y < min.y || max.z < min.z; }
-    std::int64_t volume() const { return empty() ? 0 : std::int64_t(size().x) * size().y * size().z; }
+    std::int64_t volume() const {
+        if (empty()) return 0;
+        // Saturates: sides up to 2^29 are legal.
+        const double exact = double(size().x) * size().y * size().z;
+        return exact < 9e18 ? std::int64_t(size().x) * size().y * size().z : std::int64_t(9e18);
+    }
     bool contains(const Index3& p) const {
         return p.x >= min.x && p.x <= max.x && p.y >= min.y && p.y <= max.y && p.z >= min.z && p.z <= max.z;
     }

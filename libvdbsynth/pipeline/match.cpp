@@ -2,10 +2,12 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/search/block_index_data.h"
 #include "libvdbsynth/vdb/mask.h"
 #include "libvdbsynth/vdb/redistance.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace vdbsynth {
@@ -24,6 +26,13 @@ MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const Ma
     requireOption(options.count >= 1 && options.count <= 100000, "count", std::to_string(options.count),
                   "a whole number from 1 to 100000");
     const ThreadLimit limit(ctx);
+    blockPositions(BrickField(IndexBox::fromSize(exemplar.domain.size()), 0.f),
+                   options.block);  // refuses a block larger than the domain
+    if (std::abs(voxelSizeOf(*exemplar.grid) - voxelSizeOf(*query.grid)) > 1e-5 * voxelSizeOf(*exemplar.grid))
+        throw Error(ErrorCode::ShapeMismatch,
+                    "the query's voxel size " + std::to_string(voxelSizeOf(*query.grid)) +
+                        " is not the exemplar's " + std::to_string(voxelSizeOf(*exemplar.grid)) +
+                        "; convert one of them with --voxel-size");
     const float band = std::max(8.f, float(options.block) / 2);
     const auto field = std::make_shared<const BrickField>(
         widenBand(*exemplar.grid, exemplar.domain, facesOf(exemplar), band, ctx));
@@ -31,7 +40,7 @@ MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const Ma
     // 0.
     const IndexBox box = IndexBox::cube(options.at, options.block);
     if (query.domain.intersection(box).empty())
-        throw Error(ErrorCode::InvalidOption,
+        throw Error(ErrorCode::Unusable,
                     "--at " + std::to_string(options.at.x) + "," + std::to_string(options.at.y) + "," +
                         std::to_string(options.at.z) + ": the block lies outside the query's domain " +
                         boxText(query.domain));
@@ -51,7 +60,7 @@ MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const Ma
     std::vector<std::uint8_t> known;
     if (options.mask) {
         std::vector<float> mask(count);
-        gatherMask(*options.mask, box, ctx).readBox({0, 0, 0}, side, mask.data());
+        gatherMask(*options.mask, box, *query.grid, ctx).readBox({0, 0, 0}, side, mask.data());
         for (float value : mask) known.push_back(value > 0 ? 1 : 0);
         blockQuery.known = known.data();
     }

@@ -55,15 +55,7 @@ void writeModel(const LevelSet& model, const std::vector<std::string>& paths,
     std::optional<Mesh> mesh;
     for (std::size_t i = 0; i < paths.size(); ++i) {
         Stage stage(ctx, "writing " + paths[i], 1);
-        try {
-            writeOne(model, paths[i], temporaries[i], options, mesh, ctx);
-        } catch (const Error& e) {
-            // Errors speak of the output, not of its temporary name.
-            std::string text = e.what();
-            const std::size_t at = text.find(temporaries[i]);
-            if (at != std::string::npos) text.replace(at, temporaries[i].size(), paths[i]);
-            throw Error(e.code(), text);
-        }
+        writeOne(model, paths[i], temporaries[i], options, mesh, ctx);
         stage.advance();
     }
 }

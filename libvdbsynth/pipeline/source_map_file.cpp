@@ -38,11 +38,12 @@ int getWhole(const std::string& path, const openvdb::GridBase& grid, const char*
     return int(value);
 }
 
-double getReal(const std::string& path, const openvdb::GridBase& grid, const char* name) {
+double getReal(const std::string& path, const openvdb::GridBase& grid, const char* name, double low,
+               double high) {
     const std::string text = getText(path, grid, name);
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
-    if (*end || text.empty() || !(value > 0) || value > 1e30)
+    if (*end || text.empty() || !(value >= low && value <= high))
         throw Error(ErrorCode::BadData,
                     path + ": its source map has a bad " + key(name) + " \"" + text + "\"");
     return value;
@@ -148,10 +149,12 @@ SourceMap readSourceMap(const std::string& path, const RunContext& ctx) {
     map.exemplarBox = getBox(path, *votes, "exemplar_box");
     map.targetBox = getBox(path, *votes, "target_box");
     map.targetDomain = getBox(path, *votes, "target_domain");
-    map.band = float(getReal(path, *votes, "band"));
-    map.halfWidth = float(getReal(path, *votes, "half_width"));
-    map.voxelSize = getReal(path, *votes, "voxel_size");
+    map.band = float(getReal(path, *votes, "band", 1.5, 130));
+    map.halfWidth = float(getReal(path, *votes, "half_width", 1.5, 100));
+    map.voxelSize = getReal(path, *votes, "voxel_size", 1e-30, 1e30);
     map.exemplarHash = getText(path, *votes, "exemplar_hash");
+    if (!map.targetBox.contains(map.targetDomain))
+        throw Error(ErrorCode::BadData, path + ": its source map's domain lies outside its box");
     map.patches.target = map.targetBox.size();
     const Index3 lattice = map.patches.lattice();
     const std::uint64_t blocks =

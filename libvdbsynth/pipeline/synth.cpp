@@ -31,7 +31,7 @@ Index3 targetSize(const Index3& domain, const SynthOptions& options) {
                       std::to_string(given), "at least the exemplar's domain and at most 1048576 voxels");
         size[axis] = int(std::lround(voxels));
         if (size[axis] < domain[axis])
-            throw Error(ErrorCode::InvalidOption,
+            throw Error(ErrorCode::Unusable,
                         "--size: " + std::to_string(size[axis]) + " voxels along " + char('x' + axis) +
                             " is smaller than the exemplar's domain (" + std::to_string(domain[axis]) +
                             "); give at least that, or 1x");
@@ -121,7 +121,7 @@ SynthResult synthesize(const LevelSet& exemplar, const SynthOptions& options, co
     const auto field = gatherExemplar(plan.map, exemplar, ctx);
     BrickField mask;
     if (options.exemplarMask) {
-        mask = gatherMask(*options.exemplarMask, plan.map.exemplarBox, ctx);
+        mask = gatherMask(*options.exemplarMask, plan.map.exemplarBox, *exemplar.grid, ctx);
         plan.block.mask = &mask;
     }
     BlockSynthesisResult synthesis = synthesizeBlocks({field}, plan.block, ctx);

@@ -211,7 +211,7 @@ void makeGroups(BlockIndexData& data, std::vector<std::uint64_t> firsts,
 }  // namespace
 
 bool BlockIndexData::eligible(const Index3& p) const {
-    return !maskMeans || maskMeans->inside(p) > 1 - 0.5f / (float(block) * float(block) * float(block));
+    return !maskMeans || maskMeans->inside(p) == 1.f;
 }
 
 std::size_t BlockIndexData::memoryBytes() const {

@@ -254,7 +254,14 @@ BlockSynthesisResult synthesizeBlocks(const Fields& exemplars, const BlockSynthe
     if (options.mask) {
         masks.push_back(*options.mask);
         // A coarse sample is a source only if all of its fine samples are.
-        while (masks.size() < passes.size()) masks.push_back(halved(masks.back(), ctx));
+        while (masks.size() < passes.size()) {
+            const BrickField coarse = halved(masks.back(), ctx);
+            masks.push_back(
+                BrickField::generate(coarse.box(), ctx, [&](const IndexBox& brick, float* samples) {
+                    coarse.readBox(brick.min, brick.size(), samples);
+                    for (int i = 0; i < BrickField::kSamples; ++i) samples[i] = samples[i] == 1.f ? 1.f : 0.f;
+                }));
+        }
     }
     const std::size_t last = options.draft && passes.size() > 1 ? 1 : 0;
     Synthesis synthesis(options, ctx);

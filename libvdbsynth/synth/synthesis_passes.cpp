@@ -73,10 +73,10 @@ void validateSynthesis(const Fields& exemplars, const BlockSynthesisOptions& opt
         for (int axis = 0; axis < 3; ++axis) {
             const int length = exemplar->box().size()[axis];
             if (options.size[axis] < length)
-                throw Error(ErrorCode::InvalidOption, "--size " + size +
-                                                          ": smaller than the exemplar's domain along " +
-                                                          char('x' + axis) + " (" + std::to_string(length) +
-                                                          " voxels); give at least that, or 1x");
+                throw Error(ErrorCode::Unusable, "--size " + size +
+                                                     ": smaller than the exemplar's domain along " +
+                                                     char('x' + axis) + " (" + std::to_string(length) +
+                                                     " voxels); give at least that, or 1x");
             if (options.block > length)
                 throw Error(ErrorCode::Unusable, "--block " + std::to_string(options.block) +
                                                      ": larger than the exemplar, which has " +

@@ -36,7 +36,13 @@ bool gatherActive(const openvdb::GridBase& base, const IndexBox& box, BrickField
 
 }  // namespace
 
-BrickField gatherMask(const openvdb::GridBase& grid, const IndexBox& box, const RunContext& ctx) {
+BrickField gatherMask(const openvdb::GridBase& grid, const IndexBox& box, const openvdb::FloatGrid& like,
+                      const RunContext& ctx) {
+    if (!(grid.transform() == like.transform()))
+        throw Error(ErrorCode::ShapeMismatch,
+                    "mask \"" + grid.getName() + "\": its voxels (size " +
+                        std::to_string(grid.voxelSize()[0]) + ") are not those of the model (size " +
+                        std::to_string(like.voxelSize()[0]) + "); make it with the same --voxel-size");
     BrickField field;
     if (gatherActive<openvdb::BoolGrid>(grid, box, field, ctx) ||
         gatherActive<openvdb::FloatGrid>(grid, box, field, ctx) ||

@@ -9,7 +9,10 @@ namespace vdbsynth {
 
 /// 1 where a grid of any type is active, else 0, over `box`, in a field that begins at 0.
 /// @throw Error BadData (a kind of grid that has no values, such as points)
-BrickField gatherMask(const openvdb::GridBase& grid, const IndexBox& box, const RunContext& ctx = {});
+/// @param like  the model that the mask is for; @throw Error ShapeMismatch unless both have the same
+/// transform
+BrickField gatherMask(const openvdb::GridBase& grid, const IndexBox& box, const openvdb::FloatGrid& like,
+                      const RunContext& ctx = {});
 
 // Masks: bool grids named "mask", active where true.
 

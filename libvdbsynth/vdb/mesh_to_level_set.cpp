@@ -34,13 +34,17 @@ void checkEnclosed(const openvdb::FloatGrid& grid, const Mesh& mesh, double voxe
         add(q[0], q[2], q[3]);
     }
     // Voxel centres that lie on a sheet by chance count as inside: about a voxel of depth over its area.
-    const bool crumbs = enclosed < 1.5 * area * voxelSize;
+    const bool crumbs = enclosed < 1.5 * area * voxelSize && enclosed > 2 * std::abs(volume);
     if (!crumbs && enclosed >= 0.5 * std::abs(volume)) return;
     const MeshSummary summary = summarize(mesh);
     if (summary.openEdges == 0 && enclosed > 0 && enclosed >= 0.5 * std::abs(volume)) return;
     if (summary.openEdges == 0 && std::abs(volume) > 0 && std::abs(volume) < area * voxelSize)
         throw Error(ErrorCode::Unusable,
                     name + ": thinner than a voxel; use a smaller --voxel-size or a larger --resolution");
+    if (summary.openEdges == 0)
+        throw Error(ErrorCode::Unusable, name +
+                                             ": no open edges, but the level set encloses under half of the "
+                                             "faces' volume; its shells overlap or repeat, unite them");
     throw Error(ErrorCode::Unusable,
                 name + ": " + std::to_string(summary.openEdges) +
                     " open edges; close the mesh (the level set encloses " +

@@ -81,8 +81,8 @@ BrickField widenBand(const openvdb::FloatGrid& levelSet, const IndexBox& domain,
 
 BrickField closeField(const BrickField& field, const IndexBox& domain, const CutFaces& cut, float limit,
                       const RunContext& ctx) {
-    constexpr int kMargin = 2;
-    return BrickField::generate(domain.expanded(kMargin), ctx, [&](const IndexBox& brick, float* samples) {
+    const int margin = int(std::ceil(limit));  // the whole band outside the caps
+    return BrickField::generate(domain.expanded(margin), ctx, [&](const IndexBox& brick, float* samples) {
         field.readBox(brick.min, kBrickSize, samples);
         for (int x = brick.min.x; x <= brick.max.x; ++x)
             for (int y = brick.min.y; y <= brick.max.y; ++y)

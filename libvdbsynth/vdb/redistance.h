@@ -31,7 +31,7 @@ BrickField widenBand(const openvdb::FloatGrid& levelSet, const IndexBox& domain,
 inline constexpr CutFaces kAllCut{true, true, true, true, true, true};
 
 /// A field [voxels] closed by caps half a voxel outside the cut faces of `domain`, over the domain grown by
-/// two voxels. Beyond the field's own box its nearest samples go on.
+/// the band. Beyond the field's own box its nearest samples go on.
 BrickField closeField(const BrickField& field, const IndexBox& domain, const CutFaces& cut, float limit,
                       const RunContext& ctx = {});
 

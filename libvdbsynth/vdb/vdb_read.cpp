@@ -27,6 +27,7 @@ std::unique_ptr<openvdb::io::File> openVdb(const std::string& path) {
     struct stat status {};
     if (::stat(path.c_str(), &status) != 0) throw Error(ErrorCode::Io, path + ": no such file");
     if (S_ISDIR(status.st_mode)) throw Error(ErrorCode::Io, path + ": is a directory; name a file");
+    if (!S_ISREG(status.st_mode)) throw Error(ErrorCode::Io, path + ": is not a regular file");
     char magic[8] = {};
     std::ifstream probe(path, std::ios::binary);
     if (!probe) throw Error(ErrorCode::Io, path + ": cannot be read");
@@ -116,8 +117,8 @@ openvdb::FloatGrid::Ptr pickGrid(const std::string& path, const std::vector<Grid
         }
     }
     if (!options.gridName.empty())
-        throw Error(ErrorCode::InvalidOption, "--grid " + options.gridName + ": not in " + path +
-                                                  ", which has " + (names.empty() ? "no grids" : names));
+        throw Error(ErrorCode::BadData, "--grid " + options.gridName + ": not in " + path + ", which has " +
+                                            (names.empty() ? "no grids" : names));
     if (options.iso && fog) return fog;
     if (levelSet) return levelSet;
     if (fog) return fog;
@@ -160,7 +161,7 @@ openvdb::FloatGrid::Ptr fogToLevelSet(const std::string& path, const openvdb::Fl
                                       const RunContext& ctx) {
     const ValueRange range = rangeOf(fog);
     if (iso <= std::min(range.minimum, double(fog.background())) || iso >= range.maximum)
-        throw Error(ErrorCode::InvalidOption,
+        throw Error(ErrorCode::Unusable,
                     "--iso " + std::to_string(iso) + ": no surface there; the values of \"" + fog.getName() +
                         "\" in " + path + " run from " +
                         std::to_string(std::min(range.minimum, double(fog.background()))) + " to " +

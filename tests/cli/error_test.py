@@ -19,7 +19,6 @@ class BadOptions(CliTest):
             ("--size 2x,2x: must be", ["synth", "g.vdb", "-o", "x.vdb", "--size", "2x,2x"]),
             ("--size nanx,2x,2x", ["synth", "g.vdb", "-o", "x.vdb", "--size", "nanx,2x,2x"]),
             ("--size 0.5x,1x,1x", ["synth", "g.vdb", "-o", "x.vdb", "--size", "0.5x,1x,1x"]),
-            ("smaller than the exemplar's domain", ["synth", "g.vdb", "-o", "x.vdb", "--size", "20,24,24"]),
             ("--block 3", ["synth", "g.vdb", "-o", "x.vdb", "--size", "2x,2x,2x", "--block", 3]),
             ("--border tiles", ["synth", "g.vdb", "-o", "x.vdb", "--size", "2x,2x,2x", "--border", "tiles"]),
             ("--exemplar-box 1,2,3", ["synth", "g.vdb", "-o", "x.vdb", "--size", "2x,2x,2x", "--exemplar-box", "1,2,3"]),
@@ -36,14 +35,12 @@ class BadOptions(CliTest):
             ("give one of them", ["convert", "g.vdb", "-o", "x.vdb", "--voxel-size", "1", "--resolution", "9"]),
             ("--size: given twice", ["synth", "g.vdb", "-o", "x.vdb", "--size", "2x,2x,2x", "--size", "2x,2x,2x"]),
             ("named as an output twice", ["convert", "g.vdb", "-o", "x.vdb", "-o", "x.vdb"]),
-            ("--grid rock", ["convert", "g.vdb", "-o", "x.vdb", "--grid", "rock"]),
             ("unknown kind", ["make", "cubes", "x.vdb"]),
             ("--resolution 5", ["make", "grid", "x.vdb", "--resolution", 5]),
             ("--slice q=1", ["render", "g.vdb", "-o", "x.png", "--slice", "q=1"]),
             ("--size 9x9", ["render", "g.vdb", "-o", "x.png", "--size", "9x9"]),
             ("pictures are .png", ["render", "g.vdb", "-o", "x.jpg"]),
             ("--at: missing", ["match", "g.vdb", "g.vdb"]),
-            ("outside the query's domain", ["match", "g.vdb", "g.vdb", "--at", "99,0,0"]),
             ("mask blob: unknown kind", ["mask", "blob", "-o", "x.vdb"]),
             ("--box: missing", ["crop", "g.vdb", "-o", "x.vdb"]),
             ("needs a value", ["convert", "g.vdb", "-o"]),
@@ -71,6 +68,7 @@ class BadFiles(CliTest):
         self.write("config.json", "[1, 2]")
         self.write("other.json", '{"blok": 3}')
         os.mkdir(self.path("folder.vdb"))
+        os.mkfifo(self.path("pipe.obj"))
         cases = [
             (3, "missing.vdb: no such file", ["info", "missing.vdb"]),
             (3, "missing.obj: no such file", ["info", "missing.obj"]),
@@ -85,6 +83,10 @@ class BadFiles(CliTest):
             (3, "no grid \"vote_source\"", ["repeat", "g.vdb", "g.vdb", "-o", "x.vdb"]),
             (3, "config.json: not a JSON object", ["synth", "g.vdb", "-o", "x.vdb", "--config", "config.json"]),
             (2, "\"blok\" is not an option", ["synth", "g.vdb", "-o", "x.vdb", "--config", "other.json"]),
+            (3, "folder.vdb: is a directory", ["synth", "g.vdb", "-o", "x.vdb", "--config", "folder.vdb"]),
+            (2, "the same file as", ["convert", "g.vdb", "-o", "x.vdb", "-o", "./x.vdb"]),
+            (3, "/dev/null: is not a regular file", ["convert", "g.vdb", "-o", "x.vdb", "--report", "/dev/null"]),
+            (3, "is not a regular file", ["info", "pipe.obj"]),
             (3, "nothing.json: no such file", ["synth", "g.vdb", "-o", "x.vdb", "--config", "nothing.json"]),
         ]
         for code, says, words in cases:
@@ -99,6 +101,9 @@ class BadFiles(CliTest):
         self.fails(1, "points.obj: no faces", "convert", "points.obj", "-o", "x.vdb")
         self.fails(1, "flat.obj: 3 open edges; close the mesh", "convert", "flat.obj", "-o", "x.vdb")
         self.fails(1, "--block 32: larger than the exemplar", "synth", "g.vdb", "-o", "x.vdb", "--size", "2x,2x,2x", "--block", 32)
+        self.fails(1, "smaller than the exemplar's domain", "synth", "g.vdb", "-o", "x.vdb", "--size", "20,24,24")
+        self.fails(3, "--grid rock", "convert", "g.vdb", "-o", "x.vdb", "--grid", "rock")
+        self.fails(1, "outside the query's domain", "match", "g.vdb", "g.vdb", "--at", "99,0,0")
         self.fails(1, "over --max-memory", "synth", "g.vdb", "-o", "x.vdb", "--size", "20000,20000,20000")
         self.fails(1, "over --max-memory", "make", "grid", "x.vdb", "--resolution", 4096, "--max-memory", "1G")
         self.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n")

@@ -25,10 +25,16 @@ TEST_CASE("masks: box, ball, inside and range hold the voxels that they name", "
 }
 
 TEST_CASE("gatherMask: 1 where active, for grids of several types; vectors are refused", "[vdb][error]") {
-    const BrickField field = gatherMask(*boxMask({{2, 2, 2}, {5, 5, 5}}, 1), {{0, 0, 0}, {9, 9, 9}});
+    const BrickField field = gatherMask(*boxMask({{2, 2, 2}, {5, 5, 5}}, 1), {{0, 0, 0}, {9, 9, 9}},
+                                        *openvdb::FloatGrid::create());
     for (int x = 0; x < 10; ++x) CHECK(field.at({x, 3, 3}) == (x >= 2 && x <= 5 ? 1.f : 0.f));
     const auto vectors = openvdb::Vec3SGrid::create();
     CHECK(test::thrownBy([&] {
-              gatherMask(*vectors, {{0, 0, 0}, {1, 1, 1}});
+              gatherMask(*vectors, {{0, 0, 0}, {1, 1, 1}}, *openvdb::FloatGrid::create());
           }).code == int(ErrorCode::BadData));
+    // A mask of other voxels would lie elsewhere.
+    CHECK(test::thrownBy([&] {
+              gatherMask(*boxMask({{0, 0, 0}, {1, 1, 1}}, 0.5), {{0, 0, 0}, {1, 1, 1}},
+                         *openvdb::FloatGrid::create());
+          }).code == int(ErrorCode::ShapeMismatch));
 }

@@ -65,7 +65,7 @@ TEST_CASE("readVdbModel: picks surface, else the only level set, else by name", 
     CHECK(voxelSizeOf(*readVdbModel(folder.path("a.vdb"), options).grid) == 0.5);
     options.gridName = "nothing";
     const test::Thrown thrown = reading(folder.path("a.vdb"), options);
-    CHECK(thrown.code == int(ErrorCode::InvalidOption));
+    CHECK(thrown.code == int(ErrorCode::BadData));
     CHECK(test::contains(thrown.message, "density (float), other (float), surface (float)"));
 }
 

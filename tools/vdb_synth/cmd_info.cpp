@@ -98,7 +98,9 @@ void printText(const Json& json, const std::string& indent) {
                 printText(item, indent + "  ");
             }
         } else {
-            printLine(indent + key + ": " + (value.is_string() ? value.get<std::string>() : value.dump()));
+            printLine(indent + key + ": " +
+                      (value.is_string() ? value.get<std::string>()
+                                         : value.dump(-1, ' ', false, Json::error_handler_t::replace)));
         }
     }
 }
@@ -110,7 +112,7 @@ void info(Run& run) {
     run.modelOptions();
     const Json json = isMeshPath(path) ? meshInfo(path, run) : vdbInfo(path, run);
     if (run.arguments.has("json"))
-        printLine(json.dump(2));
+        printLine(json.dump(2, ' ', false, Json::error_handler_t::replace));
     else
         printText(json, "");
     run.noteInput(path);

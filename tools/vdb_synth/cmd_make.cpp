@@ -36,6 +36,8 @@ void make(Run& run) {
     if (run.arguments.inputs.size() == 2) paths.insert(paths.begin(), run.arguments.inputs[1]);
     if (paths.empty()) throw Error(ErrorCode::InvalidOption, "no output; usage: vdb_synth " + kMake.usage);
     requireOutputPaths(paths);
+    for (const std::string& path : paths) run.outputs().reserve(path);
+    run.reserveOutputs();
     const LevelSet model = makeModel(options, run.context);
     ModelOutputOptions outputs;
     outputs.metadata = run.metadata();

@@ -60,7 +60,13 @@ void mask(Run& run) {
     if (kind == "box") {
         if (!run.arguments.has("box"))
             throw Error(ErrorCode::InvalidOption, "mask box: give --box i,j,k,I,J,K");
-        grid = boxMask(run.arguments.box("box"), maskVoxelSize(run.arguments));
+        const IndexBox box = run.arguments.box("box");
+        const Vec3d s{double(box.size().x), double(box.size().y), double(box.size().z)};
+        // Leaves along the surface, a tile of 128^3 in the middle.
+        requireMemory(run.context,
+                      (s.x * s.y + s.y * s.z + s.z * s.x) / 32 * 128 + s.x * s.y * s.z / 2e6 * 64,
+                      "a mask of " + boxText(box), "use a smaller --box");
+        grid = boxMask(box, maskVoxelSize(run.arguments));
     } else if (kind == "ball") {
         grid = makeBall(run);
     } else if (kind == "inside") {

@@ -39,6 +39,8 @@ public:
     /// loadModel, noting the file's name and hash for metadata and report.
     LevelSet load(const std::string& path);
     LevelSet load(const std::string& path, const ModelOptions& options);
+    /// Makes sure that all outputs can be written, before the work; `load` calls it.
+    void reserveOutputs();
     /// Notes an input that is not read through `load`.
     void noteInput(const std::string& path);
     /// File metadata of every VDB output.

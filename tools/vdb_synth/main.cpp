@@ -2,16 +2,17 @@
 #include "tools/vdb_synth/version.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/io/text_scanner.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <new>
-#include <sstream>
 
+#include <fcntl.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 namespace vdbsynth::cli {
 namespace {
@@ -50,19 +51,16 @@ int fail(const Error& error, const std::string& command) {
 void mergeConfig(const Command& command, Arguments& arguments) {
     const std::string path = arguments.text("config");
     if (path.empty()) return;
-    std::ifstream file(path);
-    if (!file) throw Error(ErrorCode::Io, path + ": no such file");
-    nlohmann::json json = nlohmann::json::parse(file, nullptr, /* allow_exceptions= */ false);
+    nlohmann::json json = nlohmann::json::parse(readWholeFile(path), nullptr, /* allow_exceptions= */ false);
     if (json.is_object() && json.contains("options")) json = json["options"];
     if (!json.is_object())
         throw Error(ErrorCode::BadData,
                     path + ": not a JSON object of options, such as the \"options\" of a --report");
-    std::vector<std::string> names;
-    for (const Option& option : commonOptions()) names.push_back(option.name);
-    for (const Option& option : command.options) names.push_back(option.name);
+    std::vector<Option> options = commonOptions();
+    options.insert(options.end(), command.options.begin(), command.options.end());
     for (const auto& [name, value] : json.items()) {
         std::vector<std::string> values;
-        const auto add = [&](const nlohmann::json& item) {
+        const auto add = [&values](const nlohmann::json& item) {
             values.push_back(item.is_string() ? item.get<std::string>() : item.dump());
         };
         if (value.is_array())
@@ -73,10 +71,19 @@ void mergeConfig(const Command& command, Arguments& arguments) {
             if (arguments.inputs.empty()) arguments.inputs = values;
             continue;
         }
-        if (std::find(names.begin(), names.end(), name) == names.end())
+        const auto option = std::find_if(options.begin(), options.end(),
+                                         [&, key = name](const Option& o) { return o.name == key; });
+        if (option == options.end() || name == "help" || name == "version" || name == "config")
             throw Error(ErrorCode::InvalidOption,
                         path + ": \"" + name + "\" is not an option of " + command.name);
-        if (!arguments.has(name) && !values.empty()) arguments.values[name] = values;
+        if (values.size() > 1 && !option->repeats)
+            throw Error(ErrorCode::InvalidOption, path + ": \"" + name + "\" has several values");
+        if (arguments.has(name) || values.empty() || value.is_null()) continue;
+        if (option->argument.empty()) {
+            if (values[0] == "false") continue;
+            requireOption(values[0] == "true", name, values[0], "true or false in " + path);
+        }
+        arguments.values[name] = values;
     }
 }
 
@@ -94,7 +101,12 @@ int execute(const Command& command, const Arguments& arguments, const Supervisor
     try {
         Run run(command, arguments, line);
         limitMemory(run.context.maxMemory);
-        command.run(run);
+        try {
+            command.run(run);
+        } catch (const Error& error) {
+            // Errors speak of outputs, not of their temporary names.
+            throw Error(error.code(), run.outputs().withoutTemporaries(error.what()));
+        }
         if (std::fflush(stdout) != 0) throw Error(ErrorCode::Io, "standard output cannot be written");
         return 0;
     } catch (const Error& error) {
@@ -108,7 +120,7 @@ int execute(const Command& command, const Arguments& arguments, const Supervisor
     }
 }
 
-int dispatch(const std::string& name, const std::vector<std::string>& words) {
+int dispatch(char** argv, const std::string& name, const std::vector<std::string>& words) {
     const Command* command = nullptr;
     std::vector<std::string> names;
     for (const Command* known : commands()) {
@@ -138,13 +150,15 @@ int dispatch(const std::string& name, const std::vector<std::string>& words) {
         mergeConfig(*command, arguments);
     } catch (const Error& error) {
         return fail(error, command->name);
+    } catch (const std::exception& error) {
+        return fail(Error(ErrorCode::InvalidOption, error.what()), command->name);
     }
     const auto work = [&](const SupervisorLine& line) { return execute(*command, arguments, line); };
     if (arguments.has("no-supervisor")) {
         installStopHandlers();
         return work(SupervisorLine());
     }
-    return supervise(work);
+    return supervise(argv, work);
 }
 
 }  // namespace
@@ -200,6 +214,8 @@ std::string helpText(const Command& command) {
 
 int main(int argc, char** argv) {
     using namespace vdbsynth;
+    // With a standard stream closed, the next file opened would take its place.
+    for (int file = ::open("/dev/null", O_RDWR); file >= 0 && file <= 2;) file = ::open("/dev/null", O_RDWR);
     const std::vector<std::string> words(argv + std::min(argc, 2), argv + argc);
     const std::string first = argc > 1 ? argv[1] : "";
     if (first.empty()) {
@@ -214,5 +230,5 @@ int main(int argc, char** argv) {
         std::printf("vdb_synth %s (OpenVDB %s)\n", cli::kVersion, cli::kOpenVdbVersion);
         return 0;
     }
-    return cli::dispatch(first, words);
+    return cli::dispatch(argv, first, words);
 }

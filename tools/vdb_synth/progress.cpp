@@ -43,7 +43,8 @@ void ProgressLog::draw(const Progress& progress) {
     if (mStyle == ProgressStyle::Json) {
         const nlohmann::json line{
             {"stage", progress.stage}, {"done", progress.done}, {"total", progress.total}};
-        std::fprintf(stderr, "%s\n", line.dump().c_str());
+        std::fprintf(stderr, "%s\n",
+                     line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
         return;
     }
     constexpr int kWidth = 30;

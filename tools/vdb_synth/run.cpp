@@ -40,6 +40,16 @@ const std::set<std::string>& incidental() {
     return names;
 }
 
+// Options that name a file: metadata holds its name, "inputs" its hash.
+bool isPath(const std::string& name) {
+    return name == "exemplar-mask" || name == "mask";
+}
+
+std::vector<std::string> fileNames(std::vector<std::string> paths) {
+    for (std::string& path : paths) path = fileNameOf(path);
+    return paths;
+}
+
 nlohmann::json asJson(const std::vector<std::string>& values) {
     if (values.size() == 1) return values.front();
     return values;
@@ -59,7 +69,10 @@ struct Run::Impl {
     nlohmann::json options(const Arguments& arguments, bool normalised) const {
         nlohmann::json json = nlohmann::json::object();
         for (const auto& [name, values] : arguments.values)
-            if (!normalised || !incidental().count(name)) json[name] = asJson(values);
+            if (!normalised)
+                json[name] = asJson(values);
+            else if (!incidental().count(name))
+                json[name] = asJson(isPath(name) ? fileNames(values) : values);
         if (!normalised) {
             json["inputs"] = arguments.inputs;
             json.erase("report");
@@ -140,6 +153,12 @@ ModelOptions Run::modelOptions() const {
     return options;
 }
 
+void Run::reserveOutputs() {
+    for (const char* name : {"output", "report", "source-map"})
+        for (const std::string& path : arguments.all(name))
+            if (path != kNoValue) mOutputs->reserve(path);
+}
+
 void Run::noteInput(const std::string& path) {
     mImpl->inputs.emplace_back(fileNameOf(path), fileHash(path));
 }
@@ -149,6 +168,7 @@ LevelSet Run::load(const std::string& path) {
 }
 
 LevelSet Run::load(const std::string& path, const ModelOptions& options) {
+    reserveOutputs();
     LevelSet model = loadModel(path, options, context);
     noteInput(path);
     return model;
@@ -159,9 +179,10 @@ VdbMetadata Run::metadata() const {
     for (const auto& [name, hash] : mImpl->inputs) inputs.push_back({{"name", name}, {"hash", hash}});
     return {{"vdbsynth:version", kVersion},
             {"vdbsynth:command", mImpl->command.name},
-            {"vdbsynth:options", mImpl->options(arguments, true).dump()},
+            {"vdbsynth:options",
+             mImpl->options(arguments, true).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)},
             {"vdbsynth:seed", std::to_string(context.seed)},
-            {"vdbsynth:inputs", inputs.dump()}};
+            {"vdbsynth:inputs", inputs.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)}};
 }
 
 void Run::count(const std::string& name, const nlohmann::json& value) {
@@ -190,7 +211,7 @@ void Run::finish() {
             {"counts", impl.counts}};
         const std::string path = arguments.text("report");
         std::ofstream file(mOutputs->add(path));
-        file << report.dump(2) << '\n';
+        file << report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
         file.close();
         if (!file) throw Error(ErrorCode::Io, path + ": writing failed; the disk may be full");
     }

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <set>
+#include <string>
 
 #include <fcntl.h>
 #include <poll.h>
@@ -20,6 +21,8 @@ namespace vdbsynth::cli {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr const char* kLineVariable = "VDBSYNTH_SUPERVISOR_LINE";
 
 std::atomic<bool> gStop{false};
 volatile std::sig_atomic_t gSignal = 0;
@@ -108,7 +111,7 @@ int watch(Child& child, int file) {
         ::poll(&wait, 1, 200);
         readMessages(child, file);
         const pid_t ended = ::waitpid(child.process, &status, WNOHANG);
-        if (ended == child.process) break;
+        if (ended == child.process || (ended < 0 && errno == ECHILD)) break;
         if (wait.revents & POLLHUP) {
             // The child closed its end: it is about to end.
             if (::waitpid(child.process, &status, 0) == child.process) break;
@@ -149,7 +152,9 @@ void installStopHandlers() {
     struct sigaction action {};
     action.sa_handler = onStopSignal;
     ::sigemptyset(&action.sa_mask);
-    ::sigaction(SIGINT, &action, nullptr);
+    struct sigaction inherited {};
+    ::sigaction(SIGINT, nullptr, &inherited);
+    if (inherited.sa_handler != SIG_IGN) ::sigaction(SIGINT, &action, nullptr);  // nohup and background jobs
     ::sigaction(SIGTERM, &action, nullptr);
     ::signal(SIGPIPE, SIG_IGN);
     ::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is a write error like a full disk
@@ -163,26 +168,37 @@ void SupervisorLine::send(char kind, const std::string& text) const {
     (void)ignored;
 }
 
-int supervise(const std::function<int(const SupervisorLine&)>& work) {
-    int ends[2];
-    if (::pipe2(ends, O_CLOEXEC) != 0) return work(SupervisorLine());
-    installStopHandlers();
-    const pid_t parent = ::getpid();
-    const pid_t process = ::fork();
-    if (process < 0) {
-        ::close(ends[0]);
-        ::close(ends[1]);
-        return work(SupervisorLine());
-    }
-    if (process == 0) {
+int supervise(char** argv, const std::function<int(const SupervisorLine&)>& work) {
+    if (const char* line = std::getenv(kLineVariable)) {
+        const int file = std::atoi(line);
+        ::unsetenv(kLineVariable);
         ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-        if (::getppid() != parent) ::_exit(1);
-        ::close(ends[0]);
-        const int code = work(SupervisorLine(ends[1]));
+        if (::getppid() == 1) return 1;  // the parent is gone already
+        ::fcntl(file, F_SETFD, FD_CLOEXEC);
+        installStopHandlers();
+        const int code = work(SupervisorLine(file));
         std::fflush(nullptr);
         ::_exit(code);  // everything is written; the grids need no freeing
     }
+    int ends[2];
+    if (::pipe2(ends, O_CLOEXEC) != 0) return work(SupervisorLine());
+    installStopHandlers();
+    ::signal(SIGCHLD, SIG_DFL);  // an inherited SIG_IGN would hide how the child ended
+    ::setenv(kLineVariable, std::to_string(ends[1]).c_str(), 1);
+    const pid_t process = ::fork();
+    if (process == 0) {
+        // OpenVDB's logging library starts threads when it is loaded, and a fork of a process with threads
+        // may only exec.
+        ::fcntl(ends[1], F_SETFD, 0);
+        ::execv("/proc/self/exe", argv);
+        ::_exit(127);
+    }
+    ::unsetenv(kLineVariable);
     ::close(ends[1]);
+    if (process < 0) {
+        ::close(ends[0]);
+        return work(SupervisorLine());
+    }
     ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
     Child child;
     child.process = process;

@@ -21,9 +21,10 @@ private:
 /// Runs `work` in a child process and watches it: a child that crashes, is killed, runs out of memory or
 /// hangs while it reads a file becomes one line on standard error and an exit code by the contract, and its
 /// temporary files are removed. SIGINT and SIGTERM are passed on; a child that does not end within five
-/// seconds is killed. Call before any thread is started.
+/// seconds is killed. The child is this program run again with the same words, so `work` must come from them
+/// alone.
 /// @return the exit code for this process
-int supervise(const std::function<int(const SupervisorLine&)>& work);
+int supervise(char** argv, const std::function<int(const SupervisorLine&)>& work);
 
 /// 0, SIGINT or SIGTERM: the signal that asked this process to stop. See installStopHandlers.
 int stopSignal();

@@ -16,9 +16,12 @@ LevelSet makeModel(const MakeOptions& options, const RunContext& ctx) {
     ExemplarField made = makeExemplar(options.exemplar, ctx);
     BrickField field = made.field;
     if (!made.exact) {
-        const FloatGridPtr whole = scatterBricks(made.field, {0, 0, 0}, 1.f, kExemplarLimit, ctx);
+        // Closed at the edge of what was computed: a jump from inside to outside between inactive voxels has
+        // no surface to measure from.
+        const BrickField whole = closeField(made.field, made.field.box(), kAllCut, kExemplarLimit, ctx);
+        const FloatGridPtr solid = scatterBricks(whole, {0, 0, 0}, 1.f, kExemplarLimit, ctx);
         const FloatGridPtr distances =
-            rebuildLevelSet(*whole, kExemplarLimit, "make " + options.exemplar.kind, ctx);
+            rebuildLevelSet(*solid, kExemplarLimit, "make " + options.exemplar.kind, ctx);
         field = gatherBricks(*distances, made.field.box(), 1.f, kExemplarLimit, ctx);
     }
     LevelSet model;

@@ -23,6 +23,7 @@ TEST_CASE("makeModel: every kind is a valid capped level set on its domain", "[p
         CHECK(model.grid->getName() == "surface");
         const BandQuality quality = measureBand(*model.grid);
         CHECK(quality.finite);
+        CHECK(quality.missingNeighbours == 0);
         CHECK(quality.gradientErrorMean < 0.13);
     }
     MakeOptions bad;

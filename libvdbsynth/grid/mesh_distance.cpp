@@ -3,6 +3,7 @@
 #include "libvdbsynth/grid/mesh_distance.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -21,6 +22,56 @@ struct Nearest {
     std::uint32_t face = kNone;
 };
 
+// What a triangle lies in: a disc, with which most triangles are refused at a fraction of their distance's cost.
+struct Disc {
+    Vec3f centre;
+    float radius = 0;
+    Vec3f normal;  // of length 1, or 0 for a triangle without area: its disc is a ball
+};
+
+Disc discAround(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
+    Disc disc;
+    disc.centre = (a + b + c) * (1.f / 3);
+    disc.radius =
+        std::max({length(a - disc.centre), length(b - disc.centre), length(c - disc.centre)});
+    const Vec3f normal = cross(b - a, c - a);
+    const float size = length(normal);
+    // A sliver's normal is noise.
+    if (size > 1e-2f * disc.radius * disc.radius) disc.normal = normal * (1 / size);
+    return disc;
+}
+
+// True if the disc is further away from p than `limit`; never true for one that is nearer.
+bool isBeyond(const Disc& disc, const Vec3f& p, float limit) {
+    const Vec3f offset = p - disc.centre;
+    const float height = dot(offset, disc.normal), across = dot(offset, offset) - height * height;
+    const float room = limit * limit - height * height;
+    if (room < 0) return true;
+    const float reach = std::sqrt(room) + disc.radius;
+    return across > reach * reach;
+}
+
+// A step to one of the 26 neighbours, the near ones first: they bring the answer, the others are then skipped.
+struct Step {
+    int offset;  // in a padded brick
+    float length;
+};
+
+const std::array<Step, 26>& neighbourSteps() {
+    static const std::array<Step, 26> steps = [] {
+        std::array<Step, 26> made{};
+        std::size_t n = 0;
+        for (int far = 1; far <= 3; ++far)
+            for (int x = -1; x <= 1; ++x)
+                for (int y = -1; y <= 1; ++y)
+                    for (int z = -1; z <= 1; ++z)
+                        if (x * x + y * y + z * z == far)
+                            made[n++] = {(x * kPadded + y) * kPadded + z, std::sqrt(float(far)) + 1e-5f};
+        return made;
+    }();
+    return steps;
+}
+
 bool better(const Nearest& a, const Nearest& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.face < b.face;
 }
@@ -31,13 +82,12 @@ double squaredDistance(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec
     const Vec3d ab = b - a, ac = c - a, ap = p - a;
     const double d1 = dot(ab, ap), d2 = dot(ac, ap);
     if (d1 <= 0 && d2 <= 0) return squared(a);
-    const Vec3d bp = p - b;
-    const double d3 = dot(ab, bp), d4 = dot(ac, bp);
+    const double bb = dot(ab, ab), bc = dot(ab, ac), cc = dot(ac, ac);
+    const double d3 = d1 - bb, d4 = d2 - bc;
     if (d3 >= 0 && d4 <= d3) return squared(b);
     const double vc = d1 * d4 - d3 * d2;
     if (vc <= 0 && d1 >= 0 && d3 <= 0) return squared(a + ab * (d1 > d3 ? d1 / (d1 - d3) : 0.0));
-    const Vec3d cp = p - c;
-    const double d5 = dot(ab, cp), d6 = dot(ac, cp);
+    const double d5 = d1 - bc, d6 = d2 - cc;
     if (d6 >= 0 && d5 <= d6) return squared(c);
     const double vb = d5 * d2 - d1 * d6;
     if (vb <= 0 && d2 >= 0 && d6 <= 0) return squared(a + ac * (d2 > d6 ? d2 / (d2 - d6) : 0.0));
@@ -57,18 +107,25 @@ public:
         const Index3 size = box.size();
         mBricks = {(size.x + kSide - 1) / kSide, (size.y + kSide - 1) / kSide, (size.z + kSide - 1) / kSide};
         mSlots.assign(std::size_t(mBricks.x) * std::size_t(mBricks.y) * std::size_t(mBricks.z), -1);
+        for (const Vec3f& p : mesh.points)
+            for (int axis = 0; axis < 3; ++axis)
+                mSlack = std::max(mSlack, 1e-4f + 2e-6f * std::abs(p[axis]));
+        for (const Triangle& t : mTriangles)
+            mDiscs.push_back(discAround(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]));
         collectBricks();
     }
 
     BrickField run() {
         seed();
         const int rounds = int(std::ceil(mHalfWidth));
+        mNext.resize(mNow.size());
+        mNextFresh.resize(mFresh.size());
         for (int round = 0; round < rounds; ++round) {
-            mNext = mNow;
             parallelFor(mContext, mOrigins.size(), 8, [&](std::size_t begin, std::size_t end) {
                 for (std::size_t slot = begin; slot < end; ++slot) relax(slot);
             });
             std::swap(mNow, mNext);
+            std::swap(mFresh, mNextFresh);
         }
         return BrickField::generate(mBox, mContext, [&](const IndexBox& brick, float* samples) {
             const std::int32_t slot = slotOf(brick.min);
@@ -123,6 +180,7 @@ private:
                     mOrigins.push_back(mBox.min + Index3{x, y, z} * kSide);
                 }
         mNow.assign(mOrigins.size() * BrickField::kSamples, Nearest{});
+        mFresh.assign(mNow.size(), 0);
         mFacesOf.resize(mOrigins.size());
         for (std::uint32_t i = 0; i < mTriangles.size(); ++i)
             forBricks(bricksNear(mTriangles[i], 1.f),
@@ -157,57 +215,84 @@ private:
                                 Nearest& here = brick[(l.x * kSide + l.y) * kSide + l.z];
                                 const Nearest candidate{distance({x, y, z}, face), face};
                                 if (better(candidate, here)) here = candidate;
+                                mFresh[slot * BrickField::kSamples + std::size_t(&here - brick)] = 1;
                             }
                 }
         });
     }
 
-    // The brick with one layer of its neighbours around it.
-    void pad(std::size_t slot, Nearest* padded) const {
+    // The brick with one layer of its neighbours around it; of those only what the last round changed, since
+    // the rest was tried when it was new. False if there is nothing to try.
+    bool pad(std::size_t slot, Nearest* padded) const {
         const Index3 origin = mOrigins[slot];
-        for (int x = -1; x <= kSide; ++x)
-            for (int y = -1; y <= kSide; ++y)
-                for (int z = -1; z <= kSide; ++z) {
-                    const bool own = x >= 0 && y >= 0 && z >= 0 && x < kSide && y < kSide && z < kSide;
-                    const std::int32_t from = own ? std::int32_t(slot) : slotOf(origin + Index3{x, y, z});
-                    Nearest& to = padded[((x + 1) * kPadded + y + 1) * kPadded + z + 1];
-                    to = from < 0 ? Nearest{}
-                                  : mNow[std::size_t(from) * BrickField::kSamples +
-                                         std::size_t(((x & 7) * kSide + (y & 7)) * kSide + (z & 7))];
+        bool any = false;
+        for (int dx = -1; dx <= 1; ++dx)
+            for (int dy = -1; dy <= 1; ++dy)
+                for (int dz = -1; dz <= 1; ++dz) {
+                    const std::int32_t from =
+                        dx || dy || dz ? slotOf(origin + Index3{dx, dy, dz} * kSide) : std::int32_t(slot);
+                    any = padFrom(from, {dx, dy, dz}, padded) || any;
                 }
+        return any;
+    }
+
+    // The part of a padded brick that lies in one of the 27 bricks.
+    bool padFrom(std::int32_t from, const Index3& side, Nearest* padded) const {
+        const auto first = [](int d) { return d > 0 ? kSide : d; };
+        const auto last = [](int d) { return d < 0 ? -1 : d > 0 ? kSide : kSide - 1; };
+        const std::size_t base = from < 0 ? 0 : std::size_t(from) * BrickField::kSamples;
+        bool any = false;
+        for (int x = first(side.x); x <= last(side.x); ++x)
+            for (int y = first(side.y); y <= last(side.y); ++y)
+                for (int z = first(side.z); z <= last(side.z); ++z) {
+                    const std::size_t at =
+                        base + std::size_t(((x & 7) * kSide + (y & 7)) * kSide + (z & 7));
+                    const bool fresh = from >= 0 && mFresh[at];
+                    any = any || fresh;
+                    padded[((x + 1) * kPadded + y + 1) * kPadded + z + 1] = fresh ? mNow[at] : Nearest{};
+                }
+        return any;
     }
 
     void relax(std::size_t slot) {
         Nearest padded[kPadded * kPadded * kPadded];
-        pad(slot, padded);
-        Nearest* out = &mNext[slot * BrickField::kSamples];
+        const std::size_t base = slot * BrickField::kSamples;
+        std::copy_n(&mNow[base], BrickField::kSamples, &mNext[base]);
+        std::fill_n(&mNextFresh[base], BrickField::kSamples, std::uint8_t(0));
+        if (!pad(slot, padded)) return;
+        Nearest* out = &mNext[base];
+        std::uint8_t* fresh = &mNextFresh[base];
         for (int x = 0; x < kSide; ++x)
             for (int y = 0; y < kSide; ++y)
-                for (int z = 0; z < kSide; ++z, ++out) {
-                    Nearest best = *out;
-                    if (best.distance < 0.5f) continue;  // its own faces were all tried
-                    const Index3 p = mOrigins[slot] + Index3{x, y, z};
-                    std::uint32_t tried = best.face;
-                    for (int dx = 0; dx < 3; ++dx)
-                        for (int dy = 0; dy < 3; ++dy)
-                            for (int dz = 0; dz < 3; ++dz) {
-                                const Nearest& other =
-                                    padded[((x + dx) * kPadded + y + dy) * kPadded + z + dz];
-                                // A face cannot be nearer than its distance there less the step, at most the
-                                // root of 3.
-                                if (other.face == kNone || other.face == best.face || other.face == tried ||
-                                    other.distance - 1.7321f > best.distance)
-                                    continue;
-                                tried = other.face;
-                                const Nearest candidate{distance(p, other.face), other.face};
-                                if (better(candidate, best)) best = candidate;
-                            }
-                    *out = best;
-                }
+                for (int z = 0; z < kSide; ++z, ++out, ++fresh)
+                    *fresh = relaxOne(mOrigins[slot] + Index3{x, y, z},
+                                      &padded[((x + 1) * kPadded + y + 1) * kPadded + z + 1], *out);
+    }
+
+    // Tries the neighbours' faces on a voxel; true if one is nearer.
+    bool relaxOne(const Index3& p, const Nearest* around, Nearest& best) const {
+        if (best.distance < 0.5f) return false;  // its own faces were all tried
+        const std::uint32_t before = best.face;
+        std::uint32_t tried = best.face;
+        for (const Step& step : neighbourSteps()) {
+            const Nearest& other = around[step.offset];
+            // A face cannot be nearer here than its distance there less the step.
+            if (other.face == kNone || other.face == best.face || other.face == tried ||
+                other.distance - step.length > std::min(best.distance, mHalfWidth))
+                continue;
+            tried = other.face;
+            if (isBeyond(mDiscs[other.face], {float(p.x), float(p.y), float(p.z)}, std::min(best.distance, mHalfWidth + 1) + mSlack))
+                continue;
+            const Nearest candidate{distance(p, other.face), other.face};
+            if (better(candidate, best)) best = candidate;
+        }
+        return best.face != before;
     }
 
     const Mesh& mMesh;
     std::vector<Triangle> mTriangles;
+    std::vector<Disc> mDiscs;
+    float mSlack = 1e-4f;  // what the floats of a disc may be wrong by
     IndexBox mBox;
     float mHalfWidth;
     const RunContext& mContext;
@@ -216,6 +301,7 @@ private:
     std::vector<Index3> mOrigins;
     std::vector<std::vector<std::uint32_t>> mFacesOf;
     std::vector<Nearest> mNow, mNext;
+    std::vector<std::uint8_t> mFresh, mNextFresh;  // changed in the last round
 };
 
 }  // namespace

@@ -74,6 +74,14 @@ BrickField halved(const BrickField& field, const RunContext& ctx) {
     });
 }
 
+BrickField halvedMask(const BrickField& mask, const RunContext& ctx) {
+    const BrickField coarse = halved(mask, ctx);
+    return BrickField::generate(coarse.box(), ctx, [&](const IndexBox& brick, float* samples) {
+        coarse.readBox(brick.min, brick.size(), samples);
+        for (int i = 0; i < BrickField::kSamples; ++i) samples[i] = samples[i] == 1.f ? 1.f : 0.f;
+    });
+}
+
 BrickField doubled(const BrickField& field, const Index3& size, const RunContext& ctx) {
     return BrickField::generate(IndexBox::fromSize(size), ctx, [&](const IndexBox& brick, float* samples) {
         constexpr int n = kSide / 2 + 2;

@@ -18,6 +18,10 @@ BrickField slidingMean(const BrickField& field, int cell, const RunContext& ctx 
 /// @param field  box starting at 0
 BrickField halved(const BrickField& field, const RunContext& ctx = {});
 
+/// A mask of 0 and 1 at half the resolution: 1 only where all of a cube's samples are.
+/// @param mask  box starting at 0
+BrickField halvedMask(const BrickField& mask, const RunContext& ctx = {});
+
 /// The field at twice the resolution, box [0, size), by trilinear interpolation between the centres
 /// of the coarse voxels (the inverse placement of `halved`).
 BrickField doubled(const BrickField& field, const Index3& size, const RunContext& ctx = {});

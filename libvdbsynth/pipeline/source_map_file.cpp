@@ -95,6 +95,7 @@ std::vector<GridPtr> sourceMapGrids(const SourceMap& map, const openvdb::FloatGr
     std::string cut;
     for (bool face : map.cut) cut += face ? '1' : '0';
     putText(*votes, "cut", cut);
+    putText(*votes, "draft", map.draft ? "1" : "0");
     putText(*votes, "exemplar_box", boxText(map.exemplarBox));
     putText(*votes, "target_box", boxText(map.targetBox));
     putText(*votes, "target_domain", boxText(map.targetDomain));
@@ -146,6 +147,7 @@ SourceMap readSourceMap(const std::string& path, const RunContext& ctx) {
     const std::string cut = getText(path, *votes, "cut");
     if (cut.size() != 6) throw Error(ErrorCode::BadData, path + ": its source map has a bad " + key("cut"));
     for (std::size_t face = 0; face < 6; ++face) map.cut[face] = cut[face] == '1';
+    map.draft = getWhole(path, *votes, "draft", 0, 1) == 1;
     map.exemplarBox = getBox(path, *votes, "exemplar_box");
     map.targetBox = getBox(path, *votes, "target_box");
     map.targetDomain = getBox(path, *votes, "target_domain");

@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/grid/pyramid.h"
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/mask.h"
 #include "libvdbsynth/vdb/redistance.h"
@@ -21,6 +22,10 @@ struct Plan {
     BlockSynthesisOptions block;
     SourceMap map;
 };
+
+Index3 halfOf(const Index3& n) {
+    return {(n.x + 1) / 2, (n.y + 1) / 2, (n.z + 1) / 2};
+}
 
 Index3 targetSize(const Index3& domain, const SynthOptions& options) {
     Index3 size;
@@ -62,17 +67,38 @@ Plan makePlan(const LevelSet& exemplar, const SynthOptions& options) {
     plan.block.block = options.block;
     plan.block.levels = options.levels;
     plan.block.drift = options.drift;
-    plan.block.draft = options.draft;
+    validateSynthesis({plan.map.exemplarBox.size()}, plan.block);
+    if (plan.block.block == 0) plan.block.block = deriveBlock(plan.map.exemplarBox.size(), plan.block);
     return plan;
 }
 
+// The plan at half the resolution, if the exemplar is large enough for it.
+void planDraft(Plan& plan, const RunContext& ctx) {
+    BlockSynthesisOptions coarse = plan.block;
+    coarse.size = halfOf(plan.block.size);
+    // The same block in the world, so that the draft has the choice that the full result has.
+    const int block = std::min(std::max(4, plan.block.block / 4 * 2),
+                               longestBlock(halfOf(plan.map.exemplarBox.size()), coarse));
+    if (block < 4) {
+        message(ctx, MessageLevel::Note,
+                "--draft: the exemplar is too small for half the resolution; all of it is used");
+        return;
+    }
+    coarse.block = block;
+    coarse.levels = std::max(1, (plan.block.levels > 0 ? plan.block.levels : 3) - 1);
+    coarse.drift = plan.block.drift / 2;
+    plan.block = coarse;
+    plan.map.draft = true;
+}
+
 void requireRoom(const RunContext& ctx, const SourceMap& map, const FloatGridPtr& grid) {
-    // The target's surface grows with its volume; a stored brick is 2 KiB of field, as much again of result,
-    // and its share of band, mesh and map. Bricks that hold surface: those of the exemplar, scaled.
+    // The surface grows with the volume. An active voxel of the result costs its share of field, vote, mesh
+    // and distances; one of the exemplar's widened band its share of field, pyramids and index.
     const double growth =
         double(map.targetBox.volume()) / double(std::max<std::int64_t>(map.exemplarBox.volume(), 1));
-    const double bytes =
-        growth * double(grid->activeVoxelCount()) * 60 + double(map.targetBox.volume()) * (8.0 / 512 + 0.5);
+    const double active = double(grid->activeVoxelCount());
+    const double bytes = growth * active * 60 + active * double(map.band) / kHalfWidth * 40 +
+                         double(map.targetBox.volume()) * (8.0 / 512 + 0.5);
     requireMemory(ctx, bytes,
                   "a result of " + std::to_string(map.targetBox.size().x) + " x " +
                       std::to_string(map.targetBox.size().y) + " x " +
@@ -80,20 +106,34 @@ void requireRoom(const RunContext& ctx, const SourceMap& map, const FloatGridPtr
                   "use a smaller --size or larger voxels");
 }
 
+// The exemplar as blocks are looked for in it: at half the resolution for a draft.
+std::shared_ptr<const BrickField> gatherForSearch(const SourceMap& map, const LevelSet& exemplar,
+                                                  const RunContext& ctx) {
+    Stage stage(ctx, "widening the exemplar's band", 1);
+    return std::make_shared<const BrickField>(
+        map.draft ? widenBandCoarse(*exemplar.grid, map.exemplarBox, map.cut, map.band / 2, ctx)
+                  : widenBand(*exemplar.grid, map.exemplarBox, map.cut, map.band, ctx));
+}
+
+// The exemplar as the result is read from it.
+std::shared_ptr<const BrickField> gatherForVote(const SourceMap& map, const LevelSet& exemplar,
+                                                const RunContext& ctx) {
+    if (!map.draft) return gatherForSearch(map, exemplar, ctx);
+    return std::make_shared<const BrickField>(gatherNarrowBand(*exemplar.grid, map.exemplarBox, ctx));
+}
+
+// The voted field as a level set.
 LevelSet finish(const SourceMap& map, const BrickField& field, const openvdb::FloatGrid& like,
                 const RunContext& ctx) {
     LevelSet model;
-    model.grid = closeAndRebuild(field, map.targetBox.min, map.cut, map.halfWidth, like, "the result", ctx);
+    const Index3 corner = map.targetBox.min;
+    model.grid = map.draft && map.halfWidth == kHalfWidth
+                     ? closeAndNormalize(field, corner, map.cut, like, "the result", ctx)
+                     : closeAndRebuild(field, corner, map.cut, map.halfWidth, like, "the result", ctx);
     model.domain = map.targetDomain;
     model.domainRecorded = true;
     stampLevelSet(model);
     return model;
-}
-
-std::shared_ptr<const BrickField> gatherExemplar(const SourceMap& map, const LevelSet& exemplar,
-                                                 const RunContext& ctx) {
-    return std::make_shared<const BrickField>(
-        widenBand(*exemplar.grid, map.exemplarBox, map.cut, map.band, ctx));
 }
 
 }  // namespace
@@ -101,35 +141,35 @@ std::shared_ptr<const BrickField> gatherExemplar(const SourceMap& map, const Lev
 SynthResult synthesize(const LevelSet& exemplar, const SynthOptions& options, const RunContext& ctx) {
     const ThreadLimit limit(ctx);
     Plan plan = makePlan(exemplar, options);
-    requireRoom(ctx, plan.map, exemplar.grid);
-    const int block =
-        options.block > 0 ? options.block : deriveBlock(plan.map.exemplarBox.size(), plan.block);
-    plan.block.block = block;
+    const int block = plan.block.block;
     plan.map.band = std::max(8.f, float(block) / 2);
     plan.map.halfWidth = options.halfWidth;
     plan.map.voxelSize = voxelSizeOf(*exemplar.grid);
     plan.map.exemplarHash = levelSetHash(*exemplar.grid);
+    if (options.draft) planDraft(plan, ctx);
+    requireRoom(ctx, plan.map, exemplar.grid);
     message(ctx, MessageLevel::Detail,
             "domain " + boxText(plan.map.exemplarBox) + ", target " + boxText(plan.map.targetDomain) +
-                ", block " + std::to_string(block));
-    {
-        Stage stage(ctx, "widening the band to " + std::to_string(int(plan.map.band)) + " voxels", 1);
-        message(ctx, MessageLevel::Detail,
-                "the exemplar's band is re-distanced to " + std::to_string(int(plan.map.band)) +
-                    " voxels a side");
-    }
-    const auto field = gatherExemplar(plan.map, exemplar, ctx);
+                ", block " + std::to_string(block) + ", band widened to " +
+                std::to_string(int(plan.map.band)) + " voxels");
+    const auto field = gatherForSearch(plan.map, exemplar, ctx);
     BrickField mask;
     if (options.exemplarMask) {
         mask = gatherMask(*options.exemplarMask, plan.map.exemplarBox, *exemplar.grid, ctx);
+        if (plan.map.draft) mask = halvedMask(mask, ctx);
         plan.block.mask = &mask;
     }
     BlockSynthesisResult synthesis = synthesizeBlocks({field}, plan.block, ctx);
     SynthResult result;
     plan.map.patches = std::move(synthesis.map);
+    if (plan.map.draft) {
+        plan.map.patches = plan.map.patches.scaled(2, plan.map.targetBox.size());
+        synthesis.field = voteThroughMap(plan.map.patches, {gatherForVote(plan.map, exemplar, ctx)}, ctx);
+    }
     result.model = finish(plan.map, synthesis.field, *exemplar.grid, ctx);
     result.map = std::move(plan.map);
     result.stats = synthesis.stats;
+    result.stats.block = result.map.patches.block;
     return result;
 }
 
@@ -158,9 +198,10 @@ LevelSet repeatSynthesis(const SourceMap& map, const LevelSet& exemplar, const R
         scaled.targetDomain = finer(map.targetDomain);
         scaled.band = map.band * float(factor);
         scaled.patches = map.patches.scaled(factor, scaled.targetBox.size());
+        scaled.draft = false;  // what the finer exemplar is for
     }
     requireRoom(ctx, scaled, exemplar.grid);
-    const auto field = gatherExemplar(scaled, exemplar, ctx);
+    const auto field = gatherForVote(scaled, exemplar, ctx);
     float value = 0;
     if (field->constantIn(field->box(), value))
         throw Error(ErrorCode::ShapeMismatch, "the exemplar has no surface in the map's box " +

@@ -20,7 +20,7 @@ struct SynthOptions {
     int block = 0;  ///< see BlockSynthesisOptions
     int levels = 0;
     int drift = 0;
-    bool draft = false;
+    bool draft = false;            ///< work at half the resolution and read the result at the full one
     GridPtr exemplarMask;          ///< sources only where this grid is active; null: everywhere
     float halfWidth = kHalfWidth;  ///< [voxels] of the result
 };
@@ -33,7 +33,8 @@ struct SourceMap {
                            ///< object borders
     IndexBox targetBox;    ///< target's working box
     IndexBox targetDomain;
-    float band = 8;  ///< [voxels], distances were clamped there
+    bool draft = false;  ///< matched at half the resolution, read without a widened band, normalised
+    float band = 8;      ///< [voxels], distances were clamped there
     float halfWidth = kHalfWidth;
     double voxelSize = 1;      ///< [world] of the exemplar
     std::string exemplarHash;  ///< levelSetHash of the exemplar
@@ -55,7 +56,8 @@ SynthResult synthesize(const LevelSet& exemplar, const SynthOptions& options = {
 
 /// Applies a source map to an exemplar: gathers, votes and rebuilds. With the run's own exemplar the result
 /// is bit for bit the run's. An exemplar whose voxels are 1/k of the run's (k a whole number) gives the
-/// matching finer result: its domain must be the same box of the world.
+/// matching finer result: its domain must be the same box of the world. The map of a draft gives full detail
+/// there.
 /// @throw Error ShapeMismatch (voxel size or domain do not fit the map), EmptyInput, Memory, Cancelled
 LevelSet repeatSynthesis(const SourceMap& map, const LevelSet& exemplar, const RunContext& ctx = {});
 

@@ -242,7 +242,9 @@ private:
 
 BlockSynthesisResult synthesizeBlocks(const Fields& exemplars, const BlockSynthesisOptions& options,
                                       const RunContext& ctx) {
-    validateSynthesis(exemplars, options);
+    std::vector<Index3> sizes;
+    for (const auto& exemplar : exemplars) sizes.push_back(exemplar->box().size());
+    validateSynthesis(sizes, options);
     int block = options.block;
     if (block == 0) {
         block = 256;
@@ -253,33 +255,24 @@ BlockSynthesisResult synthesizeBlocks(const Fields& exemplars, const BlockSynthe
     std::vector<BrickField> masks;
     if (options.mask) {
         masks.push_back(*options.mask);
-        // A coarse sample is a source only if all of its fine samples are.
-        while (masks.size() < passes.size()) {
-            const BrickField coarse = halved(masks.back(), ctx);
-            masks.push_back(
-                BrickField::generate(coarse.box(), ctx, [&](const IndexBox& brick, float* samples) {
-                    coarse.readBox(brick.min, brick.size(), samples);
-                    for (int i = 0; i < BrickField::kSamples; ++i) samples[i] = samples[i] == 1.f ? 1.f : 0.f;
-                }));
-        }
+        while (masks.size() < passes.size()) masks.push_back(halvedMask(masks.back(), ctx));
     }
-    const std::size_t last = options.draft && passes.size() > 1 ? 1 : 0;
     Synthesis synthesis(options, ctx);
     BlockSynthesisResult result;
     BrickField coarse;
     PatchMap coarseMap;
-    for (std::size_t p = passes.size(); p-- > last;) {
+    for (std::size_t p = passes.size(); p-- > 0;) {
         BrickField field;
         PatchMap map;
         const bool first = p + 1 == passes.size();
-        synthesis.run(passes[p], first ? nullptr : &coarse, first ? nullptr : &coarseMap,
-                      masks.empty() ? nullptr : &masks[p], field, map,
-                      "synthesis pass " + std::to_string(passes.size() - p) + " of " +
-                          std::to_string(passes.size() - last));
+        synthesis.run(
+            passes[p], first ? nullptr : &coarse, first ? nullptr : &coarseMap,
+            masks.empty() ? nullptr : &masks[p], field, map,
+            "synthesis pass " + std::to_string(passes.size() - p) + " of " + std::to_string(passes.size()));
         coarse = std::move(field);
         coarseMap = std::move(map);
     }
-    result.map = last == 0 ? std::move(coarseMap) : coarseMap.scaled(2, options.size);
+    result.map = std::move(coarseMap);
     result.field = voteThroughMap(result.map, exemplars, ctx);
     result.stats = synthesis.takeStats();
     result.stats.block = result.map.block;

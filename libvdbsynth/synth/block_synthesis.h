@@ -25,8 +25,6 @@ struct BlockSynthesisOptions {
     std::array<Border, 3> border{Border::Cut, Border::Cut, Border::Cut};
     int drift =
         0;  ///< how far a source may be from its own place along an axis that does not grow [voxels], >= 0
-    bool draft = false;  ///< leave out the last pass: the map of the one before, at full resolution; several
-                         ///< times faster
     const BrickField* mask = nullptr;  ///< sources only from blocks where it is 1; box of the first exemplar
 };
 
@@ -43,10 +41,17 @@ struct BlockSynthesisResult {
     BlockSynthesisStats stats;
 };
 
-/// The block for the last pass where none is given: 16, less where half of the exemplar's shortest growing
-/// axis (a quarter at an object border, all of it where the axis does not grow) is shorter; even.
+/// The longest block that leaves the search a choice: half of the exemplar's shortest growing axis (a quarter
+/// at an object border, all of it where the axis does not grow), even, at most 256. Under 4: too small.
+int longestBlock(const Index3& exemplar, const BlockSynthesisOptions& options);
+
+/// The block for the last pass where none is given: 16, less where longestBlock is.
 /// @throw Error Unusable (the exemplar is too small for blocks of 4)
 int deriveBlock(const Index3& exemplar, const BlockSynthesisOptions& options);
+
+/// All checks of synthesizeBlocks that need no more than the exemplars' sizes, for callers with work to do
+/// before. @throw Error InvalidOption, Unusable
+void validateSynthesis(const std::vector<Index3>& exemplars, const BlockSynthesisOptions& options);
 
 /// More of the same geometry [lagae2004, section 5], coarse to fine. Each pass works on the exemplar averaged
 /// down and walks over overlapping blocks in an order in which seven of eight octants are done; the best

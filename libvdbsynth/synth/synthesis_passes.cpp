@@ -18,19 +18,19 @@ Index3 halfOf(const Index3& n) {
     return {halfOf(n.x), halfOf(n.y), halfOf(n.z)};
 }
 
-// The longest block that leaves the search a choice along every axis of an exemplar.
-int longestBlock(const Index3& exemplar, const Index3& target, const std::array<Border, 3>& border) {
+}  // namespace
+
+int longestBlock(const Index3& exemplar, const BlockSynthesisOptions& options) {
     int longest = 256;
     for (int axis = 0; axis < 3; ++axis) {
-        const bool grows = exemplar[axis] != target[axis];
-        longest = std::min(longest, !grows                                        ? exemplar[axis]
-                                    : border[std::size_t(axis)] == Border::Object ? exemplar[axis] / 4
-                                                                                  : exemplar[axis] / 2);
+        const bool grows = exemplar[axis] != options.size[axis];
+        longest =
+            std::min(longest, !grows                                                ? exemplar[axis]
+                              : options.border[std::size_t(axis)] == Border::Object ? exemplar[axis] / 4
+                                                                                    : exemplar[axis] / 2);
     }
-    return longest;
+    return longest / 2 * 2;
 }
-
-}  // namespace
 
 std::vector<SynthesisPass> planPasses(const Fields& exemplars, const BlockSynthesisOptions& options,
                                       int block, const RunContext& ctx) {
@@ -41,10 +41,11 @@ std::vector<SynthesisPass> planPasses(const Fields& exemplars, const BlockSynthe
         coarse.target = halfOf(passes.back().target);
         coarse.scale = passes.back().scale * 2;
         coarse.block = block;
-        for (const auto& exemplar : passes.back().exemplars) {
-            const Index3 size = halfOf(exemplar->box().size());
-            coarse.block = std::min(coarse.block, longestBlock(size, coarse.target, options.border) / 2 * 2);
-        }
+        BlockSynthesisOptions coarseOptions = options;
+        coarseOptions.size = coarse.target;
+        for (const auto& exemplar : passes.back().exemplars)
+            coarse.block =
+                std::min(coarse.block, longestBlock(halfOf(exemplar->box().size()), coarseOptions));
         if (coarse.block < 4) break;
         for (const auto& exemplar : passes.back().exemplars)
             coarse.exemplars.push_back(std::make_shared<BrickField>(halved(*exemplar, ctx)));
@@ -57,7 +58,7 @@ std::vector<SynthesisPass> planPasses(const Fields& exemplars, const BlockSynthe
     return passes;
 }
 
-void validateSynthesis(const Fields& exemplars, const BlockSynthesisOptions& options) {
+void validateSynthesis(const std::vector<Index3>& exemplars, const BlockSynthesisOptions& options) {
     if (exemplars.empty()) throw Error(ErrorCode::InvalidOption, "synthesis needs at least one exemplar");
     const std::string size = std::to_string(options.size.x) + "," + std::to_string(options.size.y) + "," +
                              std::to_string(options.size.z);
@@ -69,9 +70,9 @@ void validateSynthesis(const Fields& exemplars, const BlockSynthesisOptions& opt
     requireOption(options.levels >= 0 && options.levels <= 8, "levels", std::to_string(options.levels),
                   "a whole number from 1 to 8");
     requireOption(options.drift >= 0, "drift", std::to_string(options.drift), "at least 0 voxels");
-    for (const auto& exemplar : exemplars)
+    for (const Index3& exemplar : exemplars)
         for (int axis = 0; axis < 3; ++axis) {
-            const int length = exemplar->box().size()[axis];
+            const int length = exemplar[axis];
             if (options.size[axis] < length)
                 throw Error(ErrorCode::Unusable, "--size " + size +
                                                      ": smaller than the exemplar's domain along " +
@@ -92,7 +93,7 @@ void validateSynthesis(const Fields& exemplars, const BlockSynthesisOptions& opt
 }
 
 int deriveBlock(const Index3& exemplar, const BlockSynthesisOptions& options) {
-    const int block = std::min(16, longestBlock(exemplar, options.size, options.border) / 2 * 2);
+    const int block = std::min(16, longestBlock(exemplar, options));
     if (block < 4)
         throw Error(
             ErrorCode::Unusable,

@@ -14,10 +14,6 @@ struct SynthesisPass {
     int scale = 1;  // voxels of the last pass in one of this
 };
 
-/// @throw Error InvalidOption, Unusable: see synthesizeBlocks
-void validateSynthesis(const std::vector<std::shared_ptr<const BrickField>>& exemplars,
-                       const BlockSynthesisOptions& options);
-
 /// The passes, finest first; coarser ones end where a block would fall under four samples.
 std::vector<SynthesisPass> planPasses(const std::vector<std::shared_ptr<const BrickField>>& exemplars,
                                       const BlockSynthesisOptions& options, int block, const RunContext& ctx);

@@ -6,8 +6,11 @@
 #include <cmath>
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/grid/mesh_distance.h"
+#include "libvdbsynth/grid/pyramid.h"
 #include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/wall.h"
 #include "libvdbsynth/vdb/zero_level.h"
 
 namespace vdbsynth {
@@ -57,26 +60,63 @@ FloatGridPtr rebuildLevelSet(const openvdb::FloatGrid& field, float halfWidth, c
     return grid;
 }
 
-BrickField widenBand(const openvdb::FloatGrid& levelSet, const IndexBox& domain, const CutFaces& cut,
-                     float halfWidth, const RunContext& ctx) {
-    // What may matter: the domain and the band's reach around it. Beyond a cut face the last layer inside
-    // goes on.
-    const int reach = int(std::ceil(halfWidth)) + 2;
+namespace {
+
+// The zero level of a field within the reach of a domain; beyond the field's box its last layer goes on.
+Mesh zeroLevelAround(const BrickField& field, const IndexBox& domain, float halfWidth,
+                     const RunContext& ctx) {
+    const IndexBox around = domain.expanded(int(std::ceil(halfWidth)) + 2);
+    const BrickField open = BrickField::generate(around, ctx, [&](const IndexBox& brick, float* samples) {
+        field.readBox(brick.min, kBrickSize, samples);
+    });
+    return zeroLevelInIndexSpace(*scatterBricks(open, {0, 0, 0}, 1.f, kHalfWidth, ctx), 0, ctx);
+}
+
+// A level set as it is over a domain and `reach` voxels around it, and where the domain begins in that.
+// Beyond a cut face there is nothing: the caps of a clipped model do not count.
+struct NarrowField {
+    BrickField field;
+    IndexBox domain;
+};
+
+NarrowField gatherNarrow(const openvdb::FloatGrid& levelSet, const IndexBox& domain, const CutFaces& cut,
+                         int reach, const RunContext& ctx) {
     IndexBox known = domain;
     for (int axis = 0; axis < 3; ++axis) {
         if (!cut[std::size_t(2 * axis)]) known.min[axis] -= reach;
         if (!cut[std::size_t(2 * axis + 1)]) known.max[axis] += reach;
     }
-    const BrickField narrow =
-        gatherBricks(levelSet, known, float(1 / voxelSizeOf(levelSet)), kHalfWidth, ctx);
-    const IndexBox around{domain.min - known.min - Index3{reach, reach, reach},
-                          domain.max - known.min + Index3{reach, reach, reach}};
-    const BrickField open = BrickField::generate(around, ctx, [&](const IndexBox& brick, float* samples) {
-        narrow.readBox(brick.min, kBrickSize, samples);
-    });
-    const Mesh mesh = zeroLevelInIndexSpace(*scatterBricks(open, known.min, 1.f, kHalfWidth, ctx), 0, ctx);
-    const BrickField distance = meshDistance(mesh, domain, halfWidth, ctx);
-    return withSigns(distance, domain.min, narrow, domain.min - known.min, domain.size(), ctx);
+    NarrowField narrow;
+    narrow.field = gatherBricks(levelSet, known, float(1 / voxelSizeOf(levelSet)), kHalfWidth, ctx);
+    narrow.domain = {domain.min - known.min, domain.max - known.min};
+    return narrow;
+}
+
+}  // namespace
+
+BrickField widenBand(const openvdb::FloatGrid& levelSet, const IndexBox& domain, const CutFaces& cut,
+                     float halfWidth, const RunContext& ctx) {
+    const NarrowField narrow = gatherNarrow(levelSet, domain, cut, int(std::ceil(halfWidth)) + 2, ctx);
+    const Mesh mesh = zeroLevelAround(narrow.field, narrow.domain, halfWidth, ctx);
+    const BrickField distance = meshDistance(mesh, narrow.domain, halfWidth, ctx);
+    return withSigns(distance, narrow.domain.min, narrow.field, narrow.domain.min, domain.size(), ctx);
+}
+
+BrickField widenBandCoarse(const openvdb::FloatGrid& levelSet, const IndexBox& domain, const CutFaces& cut,
+                           float halfWidth, const RunContext& ctx) {
+    const NarrowField narrow = gatherNarrow(levelSet, domain, cut, 2 * int(std::ceil(halfWidth)) + 4, ctx);
+    Mesh mesh = zeroLevelAround(narrow.field, narrow.domain, 2 * halfWidth, ctx);
+    // Coarse voxel i covers 2i and 2i + 1 of the domain. A thin bar's coarse mean is no distance; this is.
+    for (Vec3f& p : mesh.points)
+        for (int axis = 0; axis < 3; ++axis) p[axis] = (p[axis] - float(narrow.domain.min[axis]) - 0.5f) / 2;
+    const Index3 size = domain.size();
+    const IndexBox box = IndexBox::fromSize({(size.x + 1) / 2, (size.y + 1) / 2, (size.z + 1) / 2});
+    const BrickField distance = meshDistance(mesh, box, halfWidth, ctx);
+    const BrickField inside =
+        BrickField::generate(IndexBox::fromSize(size), ctx, [&](const IndexBox& brick, float* samples) {
+            narrow.field.readBox(brick.min + narrow.domain.min, kBrickSize, samples);
+        });
+    return withSigns(distance, {0, 0, 0}, halved(inside, ctx), {0, 0, 0}, box.size(), ctx);
 }
 
 BrickField closeField(const BrickField& field, const IndexBox& domain, const CutFaces& cut, float limit,
@@ -108,6 +148,63 @@ FloatGridPtr closeAndRebuild(const BrickField& field, const Index3& corner, cons
     FloatGridPtr grid = scatterBricks(closed, corner, float(voxelSizeOf(like)), limit, ctx);
     grid->setTransform(like.transform().copy());
     return rebuildLevelSet(*grid, halfWidth, what, ctx);
+}
+
+namespace {
+
+// A value over the length of its gradient towards the zero level, by the upwind differences of the eikonal
+// equation [rouy1992]: those to the neighbours that are nearer to it. At most one voxel more than the nearest
+// neighbour's, as a distance is. `value` points into an array of these strides.
+float normalizedValue(const float* value, const std::ptrdiff_t (&stride)[3]) {
+    const float sign = *value < 0 ? -1.f : 1.f;
+    float squared = 0, nearest = std::abs(*value);
+    for (std::ptrdiff_t step : stride) {
+        const float near = std::max(0.f, std::min(sign * value[-step], sign * value[step]));
+        const float drop = std::max({0.f, sign * (*value - value[-step]), sign * (*value - value[step])});
+        nearest = std::min(nearest, near);
+        squared += drop * drop;
+    }
+    return sign * std::min(std::abs(*value) / std::clamp(std::sqrt(squared), 0.25f, 4.f), nearest + 1);
+}
+
+// Each value over the length of its gradient: a distance to first order, exact where the field is one.
+BrickField normalized(const BrickField& field, float limit, const RunContext& ctx) {
+    return BrickField::generate(field.box(), ctx, [&](const IndexBox& brick, float* samples) {
+        constexpr int kPadded = BrickField::kSide + 2;
+        constexpr std::ptrdiff_t kStride[3] = {kPadded * kPadded, kPadded, 1};
+        float padded[kPadded * kPadded * kPadded];
+        field.readBox(brick.min - Index3{1, 1, 1}, {kPadded, kPadded, kPadded}, padded);
+        for (int x = 1; x <= BrickField::kSide; ++x)
+            for (int y = 1; y <= BrickField::kSide; ++y)
+                for (int z = 1; z <= BrickField::kSide; ++z) {
+                    const float* value = padded + (x * kPadded + y) * kPadded + z;
+                    *samples++ = std::abs(*value) >= limit
+                                     ? *value
+                                     : std::clamp(normalizedValue(value, kStride), -limit, limit);
+                }
+    });
+}
+
+}  // namespace
+
+FloatGridPtr closeAndNormalize(const BrickField& field, const Index3& corner, const CutFaces& cut,
+                               const openvdb::FloatGrid& like, const std::string& what,
+                               const RunContext& ctx) {
+    Stage stage(ctx, "normalising the narrow band", 1);
+    BrickField closed = closeField(field, field.box(), cut, kHalfWidth, ctx);
+    for (int pass = 0; pass < 2; ++pass) closed = normalized(closed, kHalfWidth, ctx);
+    FloatGridPtr grid = scatterBricks(closed, corner, float(voxelSizeOf(like)), kHalfWidth, ctx);
+    if (grid->activeVoxelCount() == 0) throw Error(ErrorCode::EmptyInput, what + " has no surface");
+    grid->setTransform(like.transform().copy());
+    grid->setName(kSurfaceName);
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    stage.advance();
+    return grid;
+}
+
+BrickField gatherNarrowBand(const openvdb::FloatGrid& levelSet, const IndexBox& domain,
+                            const RunContext& ctx) {
+    return gatherBricks(levelSet, domain, float(1 / voxelSizeOf(levelSet)), kHalfWidth, ctx);
 }
 
 }  // namespace vdbsynth

@@ -28,6 +28,11 @@ using CutFaces = std::array<bool, 6>;
 BrickField widenBand(const openvdb::FloatGrid& levelSet, const IndexBox& domain, const CutFaces& cut,
                      float halfWidth, const RunContext& ctx = {});
 
+/// widenBand at half the resolution: a field of ceil(n/2) voxels a side, distances in its own, doubled
+/// voxels.
+BrickField widenBandCoarse(const openvdb::FloatGrid& levelSet, const IndexBox& domain, const CutFaces& cut,
+                           float halfWidth, const RunContext& ctx = {});
+
 inline constexpr CutFaces kAllCut{true, true, true, true, true, true};
 
 /// A field [voxels] closed by caps half a voxel outside the cut faces of `domain`, over the domain grown by
@@ -41,5 +46,17 @@ BrickField closeField(const BrickField& field, const IndexBox& domain, const Cut
 FloatGridPtr closeAndRebuild(const BrickField& field, const Index3& corner, const CutFaces& cut,
                              float halfWidth, const openvdb::FloatGrid& like, const std::string& what,
                              const RunContext& ctx = {});
+
+/// closeAndRebuild to kHalfWidth at a fraction of its cost: the field keeps its zero level and its values are
+/// made distances by a few steps of the eikonal equation (OpenVDB's level set tracker), of first order where
+/// the rebuild is exact. For drafts.
+FloatGridPtr closeAndNormalize(const BrickField& field, const Index3& corner, const CutFaces& cut,
+                               const openvdb::FloatGrid& like, const std::string& what,
+                               const RunContext& ctx = {});
+
+/// The level set over `domain` as distances [voxels] as they are, clamped to its narrow band, in a field that
+/// begins at 0; for what is only read, not searched.
+BrickField gatherNarrowBand(const openvdb::FloatGrid& levelSet, const IndexBox& domain,
+                            const RunContext& ctx = {});
 
 }  // namespace vdbsynth

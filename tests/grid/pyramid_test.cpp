@@ -52,3 +52,12 @@ TEST_CASE("doubled: a linear field comes back exactly away from the faces", "[gr
             for (int z = 1; z < 19; ++z)
                 REQUIRE(back.at({x, y, z}) == Approx(linear({x, y, z})).margin(1e-4));
 }
+
+TEST_CASE("halvedMask: a coarse sample counts only if all of its fine ones do", "[grid][oracle]") {
+    const BrickField mask =
+        test::fieldFrom({6, 4, 4}, [](const Index3& p) { return p.x < 3 && p.y < 2 ? 1.f : 0.f; });
+    const BrickField half = halvedMask(mask);
+    CHECK(half.box().size() == Index3{3, 2, 2});
+    for (const Index3& p : {Index3{0, 0, 0}, Index3{1, 0, 0}, Index3{0, 1, 1}, Index3{0, 0, 1}})
+        CHECK(half.at(p) == (p.x == 0 && p.y == 0 ? 1.f : 0.f));
+}

@@ -53,6 +53,48 @@ TEST_CASE("synthesize: the result fills its domain, is valid, closed and about a
     }
 }
 
+TEST_CASE("synthesize: a draft is valid, closed, about as full, of the size asked for and searched less",
+          "[pipeline][property]") {
+    for (const char* kind : {"balls", "grid"}) {
+        INFO(kind);
+        const LevelSet exemplar = made(kind, 48);
+        SynthOptions options = sized(2, 1, 1);
+        options.size[1] = 1.3;
+        const SynthResult full = synthesize(exemplar, options);
+        options.draft = true;
+        const SynthResult draft = synthesize(exemplar, options);
+        CHECK(draft.model.domain == full.model.domain);
+        CHECK(voxelSizeOf(*draft.model.grid) == voxelSizeOf(*full.model.grid));
+        CHECK(draft.stats.exact < full.stats.exact);
+        CHECK(draft.model.domain.contains(solidBox(*draft.model.grid, "draft")));
+        const BandQuality quality = measureBand(*draft.model.grid);
+        CHECK(quality.gradientErrorMean < 0.1);
+        CHECK(quality.missingNeighbours == 0);
+        CHECK(summarize(levelSetToMesh(*draft.model.grid)).closedManifold());
+        const double before = solidVoxels(*exemplar.grid) / double(exemplar.domain.volume());
+        CHECK(solidVoxels(*draft.model.grid) / double(draft.model.domain.volume()) ==
+              Approx(before).epsilon(0.2));
+    }
+}
+
+TEST_CASE(
+    "synthesize: a draft of an exemplar too small for half the resolution says so and is the full result",
+    "[pipeline][fast]") {
+    LevelSet exemplar = made("balls", 16, 8);
+    exemplar.domain = IndexBox{{0, 0, 0}, {13, 13, 13}};
+    SynthOptions options = sized(2, 1, 1);
+    const SynthResult full = synthesize(exemplar, options);
+    options.draft = true;
+    RunContext ctx;
+    std::string said;
+    ctx.onMessage = [&](MessageLevel level, const std::string& text) {
+        if (level == MessageLevel::Note) said += text;
+    };
+    const SynthResult draft = synthesize(exemplar, options, ctx);
+    CHECK(test::contains(said, "--draft"));
+    CHECK(levelSetHash(*draft.model.grid) == levelSetHash(*full.model.grid));
+}
+
 TEST_CASE("synthesize: an object keeps its faces and grows in between", "[pipeline][property]") {
     openvdb::initialize();
     LevelSet object;

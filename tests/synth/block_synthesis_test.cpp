@@ -93,17 +93,6 @@ TEST_CASE("synthesizeBlocks: two exemplars, each block from the one that fits", 
     for (float value : test::samplesOf(other.field)) REQUIRE(value > 0);
 }
 
-TEST_CASE("synthesizeBlocks: draft matches one pass less and still fills the full size", "[synth][fast]") {
-    const auto exemplar = shared(test::ballsField({32, 32, 32}, 6, 6.f, 14));
-    BlockSynthesisOptions options = optionsFor({63, 64, 51}, 8, 3);
-    const BlockSynthesisResult full = synthesizeBlocks({exemplar}, options);
-    options.draft = true;
-    const BlockSynthesisResult draft = synthesizeBlocks({exemplar}, options);
-    CHECK(draft.field.box().size() == Index3{63, 64, 51});
-    CHECK(draft.stats.matches * 4 < full.stats.matches);
-    CHECK(draft.map.block == 16);
-}
-
 TEST_CASE("synthesizeBlocks: same bits for any number of threads, other seeds differ",
           "[synth][determinism]") {
     const auto exemplar = shared(test::ballsField({32, 32, 32}, 7, 6.f, 14));

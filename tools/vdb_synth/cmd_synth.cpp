@@ -152,7 +152,7 @@ const Command kSynth{
     {{"size", "X,Y,Z", "size of the result: voxels, or multiples of the exemplar's domain such as 2x,2x,1x"},
      {"block", "N", "side of the matched blocks (voxels), 4 to 256; default from the exemplar, at most 16"},
      {"levels", "N", "number of passes, coarse to fine; default 3 or as many as fit"},
-     {"draft", "", "leave out the finest pass: the search takes a small part of its time"},
+     {"draft", "", "a quick look: blocks are searched at half the resolution, distances are approximate"},
      {"border", "KIND",
       "cut or object, once or for each growing axis; default cut where a domain is recorded"},
      {"exemplar-box", "BOX",

@@ -49,8 +49,9 @@ class BlockIndex {
 public:
     /// @param exemplar  box begins at 0; kept alive and shared
     /// @throw Error InvalidOption (--block out of range), Unusable (block larger than the exemplar, no
-    ///              block inside the mask), Memory, Cancelled
-    /// @par Cost    time O(positions that are not constant * N), memory about 20 bytes a sample of those
+    ///              block inside the mask), Memory (by ctx.maxMemory), Cancelled
+    /// @par Cost    time O(positions whose blocks are not constant * N), memory 12 bytes each of those and 4
+    ///              for each of their means; constant blocks cost 16 bytes a run along z
     /// @par Repeats same bits for any number of threads
     static BlockIndex build(std::shared_ptr<const BrickField> exemplar, const BlockIndexOptions& options,
                             const RunContext& ctx = {});

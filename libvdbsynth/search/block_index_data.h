@@ -8,6 +8,12 @@
 
 namespace vdbsynth {
 
+/// Positions first, first + 1, ..., first + length - 1, along z.
+struct PositionRun {
+    std::uint64_t first = 0;
+    std::uint32_t length = 0;
+};
+
 /// A run of nodes whose positions are neighbours, with the range of each of their eight coarsest means.
 struct BlockGroup {
     IndexBox box;                       // of the nodes' first positions
@@ -28,7 +34,7 @@ struct BlockIndexData {
     std::vector<BlockGroup> groups;
     std::vector<std::uint64_t> nodes;        // first position of each node, as its number in `positions`
     std::vector<std::uint32_t> memberBegin;  // [nodes + 1] into members
-    std::vector<std::uint64_t> members;      // further positions of shared nodes, ascending
+    std::vector<PositionRun> members;        // further positions of shared nodes, ascending
 
     Index3 positionOf(std::uint64_t number) const {
         const std::uint64_t ny = std::uint64_t(positions.size().y), nz = std::uint64_t(positions.size().z);
@@ -52,10 +58,15 @@ struct BlockIndexData {
         if (box.contains(first) && !visit(first)) return;
         const auto begin = members.begin() + std::ptrdiff_t(memberBegin[node]),
                    end = members.begin() + std::ptrdiff_t(memberBegin[node + 1]);
-        const std::uint64_t last = numberOf(box.max);
-        for (auto m = std::lower_bound(begin, end, numberOf(box.min)); m != end && *m <= last; ++m) {
-            const Index3 p = positionOf(*m);
-            if (box.contains(p) && !visit(p)) return;
+        const std::uint64_t low = numberOf(box.min), last = numberOf(box.max);
+        auto run = std::partition_point(begin, end,
+                                        [low](const PositionRun& r) { return r.first + r.length <= low; });
+        for (; run != end && run->first <= last; ++run) {
+            Index3 p = positionOf(run->first);  // a run stays in one row of z
+            if (p.x < box.min.x || p.x > box.max.x || p.y < box.min.y || p.y > box.max.y) continue;
+            const int stop = std::min(box.max.z, p.z + int(run->length) - 1);
+            for (p.z = std::max(box.min.z, p.z); p.z <= stop; ++p.z)
+                if (!visit(p)) return;
         }
     }
 };

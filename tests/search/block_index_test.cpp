@@ -221,3 +221,24 @@ TEST_CASE("BlockIndex: bad options and cancel", "[search][error][cancel]") {
     ctx.cancel = &cancel;
     CHECK(test::thrownBy([&] { BlockIndex::build(field, options, ctx); }).code == int(ErrorCode::Cancelled));
 }
+
+TEST_CASE("BlockIndex: a mostly empty field costs what its surface costs", "[search][property]") {
+    const auto ballIn = [](int side) {
+        return std::make_shared<const BrickField>(test::fieldFrom({side, side, side}, [](const Index3& p) {
+            const float x = float(p.x) - 20, y = float(p.y) - 20, z = float(p.z) - 20;
+            return std::clamp(std::sqrt(x * x + y * y + z * z) - 8, -4.f, 4.f);
+        }));
+    };
+    BlockIndexOptions options;
+    options.block = 8;
+    const BlockIndex small = BlockIndex::build(ballIn(48), options);
+    const BlockIndex large = BlockIndex::build(ballIn(160), options);
+    CHECK(large.nodeCount() == small.nodeCount());
+    CHECK(large.memoryBytes() - large.exemplar().memoryBytes() <
+          3 * (small.memoryBytes() - small.exemplar().memoryBytes()));
+    RunContext ctx;
+    ctx.maxMemory = 100000;
+    const test::Thrown thrown = test::thrownBy([&] { BlockIndex::build(ballIn(48), options, ctx); });
+    CHECK(thrown.code == int(ErrorCode::Memory));
+    CHECK(test::contains(thrown.message, "--exemplar-box"));
+}

@@ -22,7 +22,8 @@ struct Nearest {
     std::uint32_t face = kNone;
 };
 
-// What a triangle lies in: a disc, with which most triangles are refused at a fraction of their distance's cost.
+// What a triangle lies in: a disc, with which most triangles are refused at a fraction of their distance's
+// cost.
 struct Disc {
     Vec3f centre;
     float radius = 0;
@@ -32,8 +33,7 @@ struct Disc {
 Disc discAround(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
     Disc disc;
     disc.centre = (a + b + c) * (1.f / 3);
-    disc.radius =
-        std::max({length(a - disc.centre), length(b - disc.centre), length(c - disc.centre)});
+    disc.radius = std::max({length(a - disc.centre), length(b - disc.centre), length(c - disc.centre)});
     const Vec3f normal = cross(b - a, c - a);
     const float size = length(normal);
     // A sliver's normal is noise.
@@ -51,7 +51,8 @@ bool isBeyond(const Disc& disc, const Vec3f& p, float limit) {
     return across > reach * reach;
 }
 
-// A step to one of the 26 neighbours, the near ones first: they bring the answer, the others are then skipped.
+// A step to one of the 26 neighbours, the near ones first: they bring the answer, the others are then
+// skipped.
 struct Step {
     int offset;  // in a padded brick
     float length;
@@ -108,8 +109,7 @@ public:
         mBricks = {(size.x + kSide - 1) / kSide, (size.y + kSide - 1) / kSide, (size.z + kSide - 1) / kSide};
         mSlots.assign(std::size_t(mBricks.x) * std::size_t(mBricks.y) * std::size_t(mBricks.z), -1);
         for (const Vec3f& p : mesh.points)
-            for (int axis = 0; axis < 3; ++axis)
-                mSlack = std::max(mSlack, 1e-4f + 2e-6f * std::abs(p[axis]));
+            for (int axis = 0; axis < 3; ++axis) mSlack = std::max(mSlack, 1e-4f + 2e-6f * std::abs(p[axis]));
         for (const Triangle& t : mTriangles)
             mDiscs.push_back(discAround(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]));
         collectBricks();
@@ -245,8 +245,7 @@ private:
         for (int x = first(side.x); x <= last(side.x); ++x)
             for (int y = first(side.y); y <= last(side.y); ++y)
                 for (int z = first(side.z); z <= last(side.z); ++z) {
-                    const std::size_t at =
-                        base + std::size_t(((x & 7) * kSide + (y & 7)) * kSide + (z & 7));
+                    const std::size_t at = base + std::size_t(((x & 7) * kSide + (y & 7)) * kSide + (z & 7));
                     const bool fresh = from >= 0 && mFresh[at];
                     any = any || fresh;
                     padded[((x + 1) * kPadded + y + 1) * kPadded + z + 1] = fresh ? mNow[at] : Nearest{};
@@ -281,7 +280,8 @@ private:
                 other.distance - step.length > std::min(best.distance, mHalfWidth))
                 continue;
             tried = other.face;
-            if (isBeyond(mDiscs[other.face], {float(p.x), float(p.y), float(p.z)}, std::min(best.distance, mHalfWidth + 1) + mSlack))
+            if (isBeyond(mDiscs[other.face], {float(p.x), float(p.y), float(p.z)},
+                         std::min(best.distance, mHalfWidth + 1) + mSlack))
                 continue;
             const Nearest candidate{distance(p, other.face), other.face};
             if (better(candidate, best)) best = candidate;

@@ -72,8 +72,11 @@ MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const Ma
                     "--mask: not active anywhere in the query's block, so there is nothing to compare");
     BlockIndexOptions indexOptions;
     indexOptions.block = options.block;
+    Stage stage(ctx, "matching", 2);
     const BlockIndex index = BlockIndex::build(field, indexOptions, ctx);
+    stage.advance();
     result.matches = index.match(blockQuery, options.count, &result.counts);
+    stage.advance();
     for (BlockMatch& match : result.matches) match.position = match.position + exemplar.domain.min;
     return result;
 }

@@ -50,6 +50,22 @@ LevelSet loadMesh(const std::string& path, const ModelOptions& options, const Ru
     return model;
 }
 
+// A level set at the voxel size asked for: its own if none is.
+LevelSet atVoxelSize(const std::string& path, const LevelSet& model, const ModelOptions& options,
+                     const RunContext& ctx) {
+    const double present = voxelSizeOf(*model.grid);
+    const Index3 size = model.domain.size();
+    const double wanted = options.voxelSize > 0 ? options.voxelSize
+                          : options.resolution > 0
+                              ? present * std::max({size.x, size.y, size.z}) / options.resolution
+                              : present;
+    if (std::abs(wanted - present) <= 1e-6 * present) return model;
+    char text[128];
+    std::snprintf(text, sizeof text, ": resampled from voxels of %.6g to %.6g", present, wanted);
+    message(ctx, MessageLevel::Note, path + text);
+    return resampled(model, wanted, ctx);
+}
+
 }  // namespace
 
 bool isMeshPath(const std::string& path) {
@@ -80,7 +96,7 @@ LevelSet loadModel(const std::string& path, const ModelOptions& options, const R
     VdbReadOptions read;
     read.gridName = options.grid;
     read.iso = options.iso;
-    return readVdbModel(path, read, ctx);
+    return atVoxelSize(path, readVdbModel(path, read, ctx), options, ctx);
 }
 
 LevelSet withHalfWidth(const LevelSet& model, double halfWidth, const RunContext& ctx) {

@@ -103,6 +103,12 @@ std::vector<GridPtr> sourceMapGrids(const SourceMap& map, const openvdb::FloatGr
     putText(*votes, "half_width", exactText(double(map.halfWidth)));
     putText(*votes, "voxel_size", exactText(map.voxelSize));
     putText(*votes, "exemplar_hash", map.exemplarHash);
+    putText(*votes, "exemplar_domain", boxText(map.exemplarDomain));
+    // A target keeps the exemplar's transform.
+    const openvdb::Mat4d matrix = result.transform().baseMap()->getAffineMap()->getMat4();
+    std::string transform;
+    for (int i = 0; i < 16; ++i) transform += (i ? "," : "") + exactText(matrix.asPointer()[i]);
+    putText(*votes, "exemplar_transform", transform);
 
     auto source = openvdb::Vec3IGrid::create(openvdb::Vec3i(0));
     source->setName("source");
@@ -155,6 +161,7 @@ SourceMap readSourceMap(const std::string& path, const RunContext& ctx) {
     map.halfWidth = float(getReal(path, *votes, "half_width", 1.5, 100));
     map.voxelSize = getReal(path, *votes, "voxel_size", 1e-30, 1e30);
     map.exemplarHash = getText(path, *votes, "exemplar_hash");
+    map.exemplarDomain = getBox(path, *votes, "exemplar_domain");
     if (!map.targetBox.contains(map.targetDomain))
         throw Error(ErrorCode::BadData, path + ": its source map's domain lies outside its box");
     map.patches.target = map.targetBox.size();

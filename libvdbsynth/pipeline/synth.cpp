@@ -46,11 +46,13 @@ Index3 targetSize(const Index3& domain, const SynthOptions& options) {
 
 Plan makePlan(const LevelSet& exemplar, const SynthOptions& options) {
     Plan plan;
-    const IndexBox domain = options.exemplarBox ? *options.exemplarBox : exemplar.domain;
-    const bool recorded = options.exemplarBox || exemplar.domainRecorded;
+    const IndexBox domain = options.exemplarBox    ? *options.exemplarBox
+                            : options.exemplarMask ? activeBox(*options.exemplarMask)
+                                                   : exemplar.domain;
+    const bool recorded = options.exemplarBox || options.exemplarMask || exemplar.domainRecorded;
     const Index3 size = targetSize(domain.size(), options);
     plan.map.targetDomain = {domain.min, domain.min + size - Index3{1, 1, 1}};
-    plan.map.exemplarBox = domain;
+    plan.map.exemplarBox = plan.map.exemplarDomain = domain;
     plan.map.targetBox = plan.map.targetDomain;
     for (int axis = 0; axis < 3; ++axis) {
         const Border border =
@@ -110,9 +112,11 @@ void requireRoom(const RunContext& ctx, const SourceMap& map, const FloatGridPtr
 std::shared_ptr<const BrickField> gatherForSearch(const SourceMap& map, const LevelSet& exemplar,
                                                   const RunContext& ctx) {
     Stage stage(ctx, "widening the exemplar's band", 1);
-    return std::make_shared<const BrickField>(
+    const auto field = std::make_shared<const BrickField>(
         map.draft ? widenBandCoarse(*exemplar.grid, map.exemplarBox, map.cut, map.band / 2, ctx)
                   : widenBand(*exemplar.grid, map.exemplarBox, map.cut, map.band, ctx));
+    stage.advance();
+    return field;
 }
 
 // The exemplar as the result is read from it.
@@ -183,6 +187,9 @@ LevelSet repeatSynthesis(const SourceMap& map, const LevelSet& exemplar, const R
                         " is not the map's " + std::to_string(map.voxelSize) +
                         " divided by a whole number; convert it with --voxel-size " +
                         std::to_string(map.voxelSize));
+    if (factor == 1 && levelSetHash(*exemplar.grid) != map.exemplarHash)
+        message(ctx, MessageLevel::Note,
+                "the exemplar is not the one that the map was made with; its geometry is read instead");
     SourceMap scaled = map;
     if (factor > 1) {
         // Voxel i of the map covers fine voxels k*i + shift .. k*i + shift + k-1: the fine voxels whose

@@ -21,7 +21,8 @@ struct SynthOptions {
     int levels = 0;
     int drift = 0;
     bool draft = false;            ///< work at half the resolution and read the result at the full one
-    GridPtr exemplarMask;          ///< sources only where this grid is active; null: everywhere
+    GridPtr exemplarMask;          ///< sources only where this grid is active; its box is the domain unless
+                                   ///< exemplarBox says another; null: everywhere
     float halfWidth = kHalfWidth;  ///< [voxels] of the result
 };
 
@@ -31,7 +32,8 @@ struct SourceMap {
     std::array<bool, 6> cut{};  ///< faces of the target that clip and cap
     IndexBox exemplarBox;  ///< exemplar's working box [its index space]: the domain, grown by the margin at
                            ///< object borders
-    IndexBox targetBox;    ///< target's working box
+    IndexBox exemplarDomain;
+    IndexBox targetBox;  ///< target's working box
     IndexBox targetDomain;
     bool draft = false;  ///< matched at half the resolution, read without a widened band, normalised
     float band = 8;      ///< [voxels], distances were clamped there

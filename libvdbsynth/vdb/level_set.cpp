@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <sstream>
 
 namespace vdbsynth {
@@ -159,6 +160,47 @@ BandQuality measureBand(const openvdb::FloatGrid& grid, const RunContext& ctx) {
     std::nth_element(all.begin(), p99, all.end());
     quality.gradientErrorP99 = double(*p99);
     return quality;
+}
+
+ValueRange rangeOf(const openvdb::FloatGrid& grid) {
+    ValueRange range;
+    range.finite = std::isfinite(grid.background());
+    bool first = true;
+    const auto add = [&](float value) {
+        if (!std::isfinite(value)) {
+            range.finite = false;
+            return;
+        }
+        range.minimum = first ? double(value) : std::min(range.minimum, double(value));
+        range.maximum = first ? double(value) : std::max(range.maximum, double(value));
+        first = false;
+    };
+    for (const Leaf* leaf : leavesOf(grid))
+        for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
+            const float value = leaf->getValue(n);
+            if (leaf->isValueOn(n))
+                add(value);
+            else if (!std::isfinite(value))
+                range.finite = false;
+        }
+    auto tile = grid.tree().cbeginValueAll();
+    tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile) {
+        if (tile.isValueOn())
+            add(*tile);
+        else if (!std::isfinite(*tile))
+            range.finite = false;
+    }
+    return range;
+}
+
+FloatGridPtr asFloat(const GridPtr& grid) {
+    if (const auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid)) return floats;
+    const auto doubles = openvdb::gridPtrCast<openvdb::DoubleGrid>(grid);
+    if (!doubles) return nullptr;
+    auto copy = openvdb::FloatGrid::create(*doubles);  // metadata and transform
+    copy->setTree(std::make_shared<openvdb::FloatTree>(doubles->tree()));
+    return copy;
 }
 
 }  // namespace vdbsynth

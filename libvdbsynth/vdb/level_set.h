@@ -52,4 +52,15 @@ struct BandQuality {
 };
 BandQuality measureBand(const openvdb::FloatGrid& grid, const RunContext& ctx = {});
 
+/// Values of a grid's active voxels and tiles, and whether all of its values, inactive ones too, are finite.
+struct ValueRange {
+    double minimum = 0, maximum = 0;
+    bool finite = true;
+};
+
+ValueRange rangeOf(const openvdb::FloatGrid& grid);
+
+/// A float grid as it is, a double grid as floats, null for any other kind.
+FloatGridPtr asFloat(const GridPtr& grid);
+
 }  // namespace vdbsynth

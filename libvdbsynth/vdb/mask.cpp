@@ -53,6 +53,12 @@ BrickField gatherMask(const openvdb::GridBase& grid, const IndexBox& box, const 
                                         " cannot be a mask; bool, mask, int32 or float can");
 }
 
+IndexBox activeBox(const openvdb::GridBase& grid) {
+    if (grid.activeVoxelCount() == 0)
+        throw Error(ErrorCode::EmptyInput, "mask \"" + grid.getName() + "\": has no active voxels");
+    return fromBBox(grid.evalActiveVoxelBoundingBox());
+}
+
 GridPtr boxMask(const IndexBox& box, double voxelSize) {
     auto mask = emptyMask(openvdb::math::Transform::createLinearTransform(voxelSize));
     mask->fill(toBBox(box), true, true);

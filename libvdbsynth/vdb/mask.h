@@ -14,6 +14,9 @@ namespace vdbsynth {
 BrickField gatherMask(const openvdb::GridBase& grid, const IndexBox& box, const openvdb::FloatGrid& like,
                       const RunContext& ctx = {});
 
+/// Box of a grid's active voxels. @throw Error EmptyInput (none)
+IndexBox activeBox(const openvdb::GridBase& grid);
+
 // Masks: bool grids named "mask", active where true.
 
 /// Every voxel of `box`.

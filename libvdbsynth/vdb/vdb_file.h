@@ -23,8 +23,19 @@ struct GridSummary {
     std::vector<std::pair<std::string, std::string>> metadata;
 };
 
+std::vector<GridSummary> summarizeGrids(const std::vector<GridPtr>& grids);
+
+/// File metadata, as name and value.
+using VdbMetadata = std::vector<std::pair<std::string, std::string>>;
+
+struct VdbContents {
+    std::vector<GridPtr> grids;
+    VdbMetadata metadata;
+};
+
+/// All of a file. A grid of a kind that this OpenVDB does not know is left out with a warning.
 /// @throw Error Io (missing, a directory, not readable), BadData (not a VDB file, truncated, corrupt)
-std::vector<GridSummary> summarizeVdb(const std::string& path, const RunContext& ctx = {});
+VdbContents readVdb(const std::string& path, const RunContext& ctx = {});
 
 struct VdbReadOptions {
     std::string gridName;  ///< which grid; empty: "surface", else the only level set, else the first level
@@ -42,15 +53,20 @@ struct VdbReadOptions {
 LevelSet readVdbModel(const std::string& path, const VdbReadOptions& options = {},
                       const RunContext& ctx = {});
 
+/// The same from grids that were read. @param path  for messages
+LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& grids,
+                        const VdbReadOptions& options = {}, const RunContext& ctx = {});
+
+/// The model at another voxel size, its domain the same box of the world in whole voxels. A level set is read
+/// by its zero level, so detail under a voxel is lost, never made. @throw Error EmptyInput, Memory
+LevelSet resampled(const LevelSet& model, double voxelSize, const RunContext& ctx = {});
+
 /// Reads a float or double grid as it is: the named one, or the only one. @throw Error as readVdbModel
 FloatGridPtr readVdbFloatGrid(const std::string& path, const std::string& name, const RunContext& ctx = {});
 /// Reads one named grid of any type. @throw Error as readVdbModel
 GridPtr readVdbGrid(const std::string& path, const std::string& name, const RunContext& ctx = {});
 /// All grids of a file. @throw Error as readVdbModel
 std::vector<GridPtr> readVdbGrids(const std::string& path, const RunContext& ctx = {});
-
-/// File metadata, as name and value.
-using VdbMetadata = std::vector<std::pair<std::string, std::string>>;
 
 /// Writes grids to a VDB file. The random UUID in OpenVDB's header is replaced by one derived from the
 /// content, so equal grids and metadata give equal bytes.

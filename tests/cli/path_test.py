@@ -39,7 +39,40 @@ class MainPath(CliTest):
         report = json.loads(self.read("b.json"))
         self.assertGreater(report["counts"]["matches"], 10)
         self.assertGreater(report["peak_bytes"], 1e6)
+        self.assertLess(report["quality"]["gradient_error_mean"], 0.15)
+        self.assertEqual(report["quality"]["band_gaps"], 0)
         self.assertTrue(all(s["seconds"] >= 0 and s["name"] for s in report["stages"]))
+
+    def test_options_are_normalised_in_the_output(self):
+        self.ok("make", "grid", "g.vdb", "--resolution", 24)
+        self.ok("synth", "g.vdb", "-o", "a.vdb", "--size", "2x,1x,1x", "--half-width", "3.0", "--draft")
+        self.ok("synth", "g.vdb", "--draft", "-o", "b.vdb", "--size=2.0x,1x,1.0x", "--threads", 1, "--drift", 0)
+        self.assertEqual(self.read("a.vdb"), self.read("b.vdb"))
+        options = json.loads(self.ok("info", "a.vdb", "--json").stdout)["metadata"]["vdbsynth:options"]
+        self.assertEqual(json.loads(options)["size"], "2x,1x,1x")
+        self.assertEqual(json.loads(options)["drift"], "0")
+
+    def test_another_voxel_size_resamples(self):
+        self.ok("make", "balls", "b.vdb", "--resolution", 32)
+        result = self.ok("convert", "b.vdb", "-o", "c.vdb", "--voxel-size", "0.5")
+        self.assertIn("resampled", result.stderr)
+        model = json.loads(self.ok("info", "c.vdb", "--json").stdout)["model"]
+        self.assertEqual(model["voxel_size"], 0.5)
+        self.assertTrue(model["domain_recorded"])
+        self.assertTrue(model["valid"], model)
+
+    def test_a_mask_is_the_domain(self):
+        self.ok("make", "grid", "g.vdb", "--resolution", 40)
+        self.ok("mask", "box", "-o", "m.vdb", "--box", "8,0,0,39,39,31")
+        self.ok("synth", "g.vdb", "-o", "a.vdb", "--size", "2x,1x,1x", "--exemplar-mask", "m.vdb")
+        model = json.loads(self.ok("info", "a.vdb", "--json").stdout)["model"]
+        self.assertEqual(model["domain"], "8,0,0,71,39,31")
+
+    def test_what_standard_output_cannot_take(self):
+        with open("/dev/full", "w") as full:
+            for words in (["--help"], ["synth", "--help"], ["--version"]):
+                done = subprocess.run([PROGRAM, *words], stdout=full, stderr=subprocess.PIPE, text=True)
+                self.assertEqual(done.returncode, 3, done.stderr)
 
     def test_repeat_gives_the_same_surface(self):
         self.ok("make", "weave", "w.vdb", "--resolution", 40)

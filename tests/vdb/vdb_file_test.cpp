@@ -3,6 +3,8 @@
 #include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "libvdbsynth/vdb/bricks.h"
@@ -163,10 +165,10 @@ TEST_CASE("readVdbModel: what cannot be used is refused in one line", "[vdb][err
     CHECK(test::contains(reading(folder.write("t.vdb", "solid")).message, "not a VDB file"));
 }
 
-TEST_CASE("summarizeVdb: names, types, ranges and boxes", "[vdb][fast]") {
+TEST_CASE("summarizeGrids: names, types, ranges and boxes", "[vdb][fast]") {
     const test::TemporaryFolder folder;
     writeVdb(folder.path("a.vdb"), {ball(0.5, "surface"), fog("density")}, {});
-    const std::vector<GridSummary> all = summarizeVdb(folder.path("a.vdb"));
+    const std::vector<GridSummary> all = summarizeGrids(readVdb(folder.path("a.vdb")).grids);
     REQUIRE(all.size() == 2);
     CHECK(all[1].name == "surface");
     CHECK(all[1].gridClass == "level set");
@@ -188,4 +190,51 @@ TEST_CASE("readVdbModel: VDB files made by other programs", "[vdb][oracle]") {
     options.iso = 0.5;
     CHECK(solidVoxels(*readVdbModel(test::sample("volumes/elyg-pig-fog.vdb"), options).grid) > 1e5);
     CHECK(reading(test::sample("volumes/elyg-pyro-fog.vdb")).code == int(ErrorCode::Unusable));
+}
+
+TEST_CASE("readVdb: a grid of a kind unknown to OpenVDB is left out with a warning, the others are read",
+          "[vdb][error]") {
+    const test::TemporaryFolder folder;
+    const openvdb::FloatGrid::Ptr model = ball(1, kSurfaceName);
+    auto other = openvdb::Vec3IGrid::create();
+    other->setName("other");
+    other->tree().setValueOn(openvdb::Coord(1, 2, 3));
+    writeVdb(folder.path("a.vdb"), {other, model}, {{"from", "a test"}});
+    std::string bytes = test::contentOf(folder.path("a.vdb"));
+    const std::string known = "Tree_vec3i_5_4_3";
+    const std::size_t at = bytes.find(known);
+    REQUIRE(at != std::string::npos);
+    bytes.replace(at, known.size(), "Tree_vec3q_5_4_3");
+    folder.write("b.vdb", bytes);
+    RunContext ctx;
+    std::string said;
+    ctx.onMessage = [&](MessageLevel level, const std::string& text) {
+        if (level == MessageLevel::Warning) said += text;
+    };
+    const VdbContents contents = readVdb(folder.path("b.vdb"), ctx);
+    CHECK(contents.grids.size() == 1);
+    CHECK(contents.grids[0]->getName() == kSurfaceName);
+    CHECK(test::contains(said, "\"other\""));
+    CHECK(std::count(contents.metadata.begin(), contents.metadata.end(),
+                     std::make_pair(std::string("from"), std::string("a test"))) == 1);
+    CHECK(readVdb(folder.path("b.vdb")).grids.size() == 1);  // nothing is left behind in OpenVDB's table
+    CHECK(readVdb(folder.path("a.vdb")).grids.size() == 2);
+}
+
+TEST_CASE("resampled: the same solid in other voxels, a recorded domain scaled with it", "[vdb][property]") {
+    LevelSet model{ball(0.5, kSurfaceName), {}, false};
+    const double volume = solidVoxels(*model.grid) * std::pow(voxelSizeOf(*model.grid), 3);
+    for (double factor : {0.5, 0.7, 2.0}) {
+        const LevelSet other = resampled(model, factor * voxelSizeOf(*model.grid));
+        CHECK(voxelSizeOf(*other.grid) == Approx(factor * voxelSizeOf(*model.grid)));
+        CHECK(solidVoxels(*other.grid) * std::pow(voxelSizeOf(*other.grid), 3) ==
+              Approx(volume).epsilon(0.03));
+        CHECK(measureBand(*other.grid).missingNeighbours == 0);
+    }
+    model.domain = {{-20, -20, -20}, {19, 19, 19}};
+    model.domainRecorded = true;
+    CHECK(resampled(model, 2 * voxelSizeOf(*model.grid)).domain == IndexBox{{-10, -10, -10}, {9, 9, 9}});
+    RunContext ctx;
+    ctx.maxMemory = 1000000;
+    CHECK(test::thrownBy([&] { resampled(model, 1e-3, ctx); }).code == int(ErrorCode::Memory));
 }

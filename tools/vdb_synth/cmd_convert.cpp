@@ -34,7 +34,7 @@ void convert(Run& run) {
         withHalfWidth(run.load(run.arguments.inputs[0], modelOptions), modelOptions.halfWidth, run.context);
     outputs.metadata = run.metadata();
     writeModel(model, paths, outputs, run.outputs(), run.context);
-    run.count("active_voxels", activeVoxels(*model.grid));
+    run.describe(model);
     run.finish();
 }
 

@@ -18,11 +18,13 @@ void crop(Run& run) {
                     "--box: missing; give i,j,k,I,J,K in index space, both corners inclusive");
     const IndexBox box = run.arguments.box("box");
     requireModelPath(run.arguments.inputs[0]);
-    const LevelSet result = cropModel(run.load(run.arguments.inputs[0]), box, run.context);
+    const double halfWidth = run.modelOptions().halfWidth;
+    const LevelSet result =
+        withHalfWidth(cropModel(run.load(run.arguments.inputs[0]), box, run.context), halfWidth, run.context);
     ModelOutputOptions outputs;
     outputs.metadata = run.metadata();
     writeModel(result, paths, outputs, run.outputs(), run.context);
-    run.count("active_voxels", activeVoxels(*result.grid));
+    run.describe(result);
     run.finish();
 }
 

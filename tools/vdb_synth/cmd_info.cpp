@@ -62,10 +62,17 @@ Json gridInfo(const GridSummary& s) {
 Json vdbInfo(const std::string& path, Run& run) {
     Json info{{"file", path}, {"kind", "vdb"}};
     Json grids = Json::array();
-    for (const GridSummary& summary : summarizeVdb(path, run.context)) grids.push_back(gridInfo(summary));
+    const VdbContents contents = readVdb(path, run.context);
+    Json metadata = Json::object();
+    for (const auto& [name, value] : contents.metadata) metadata[name] = value;
+    info["metadata"] = metadata;
+    for (const GridSummary& summary : summarizeGrids(contents.grids)) grids.push_back(gridInfo(summary));
     info["grids"] = grids;
     try {
-        const LevelSet model = loadModel(path, run.modelOptions(), run.context);
+        VdbReadOptions read;
+        read.gridName = run.modelOptions().grid;
+        read.iso = run.modelOptions().iso;
+        const LevelSet model = modelFromGrids(path, contents.grids, read, run.context);
         const BandQuality quality = measureBand(*model.grid, run.context);
         info["model"] = Json{
             {"voxel_size", voxelSizeOf(*model.grid)},

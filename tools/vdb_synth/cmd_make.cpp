@@ -38,12 +38,13 @@ void make(Run& run) {
     requireOutputPaths(paths);
     for (const std::string& path : paths) run.outputs().reserve(path);
     run.reserveOutputs();
-    const LevelSet model = makeModel(options, run.context);
+    const double halfWidth = run.modelOptions().halfWidth;
+    const LevelSet model = withHalfWidth(makeModel(options, run.context), halfWidth, run.context);
     ModelOutputOptions outputs;
     outputs.metadata = run.metadata();
     outputs.metadata.emplace_back("vdbsynth:kind", options.exemplar.kind);
     writeModel(model, paths, outputs, run.outputs(), run.context);
-    run.count("active_voxels", activeVoxels(*model.grid));
+    run.describe(model);
     run.finish();
 }
 

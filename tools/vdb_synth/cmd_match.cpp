@@ -35,14 +35,7 @@ void match(Run& run) {
         queryOptions.resolution = 0;
     }
     const LevelSet query = run.load(run.arguments.inputs[1], queryOptions);
-    if (run.arguments.has("mask")) {
-        const std::string path = run.arguments.text("mask");
-        const std::vector<GridPtr> grids = readVdbGrids(path, run.context);
-        if (grids.size() != 1)
-            throw Error(ErrorCode::BadData, path + ": a mask file holds one grid, this one holds " +
-                                                std::to_string(grids.size()));
-        options.mask = grids.front();
-    }
+    if (run.arguments.has("mask")) options.mask = run.loadMask("mask");
     const MatchResult result = matchModel(exemplar, query, options, run.context);
     nlohmann::json matches = nlohmann::json::array();
     for (const BlockMatch& found : result.matches)

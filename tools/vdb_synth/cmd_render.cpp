@@ -42,7 +42,8 @@ void render(Run& run) {
     const std::array<double, 3> view =
         run.arguments.triple("view", {preview.view.x, preview.view.y, preview.view.z});
     preview.view = {view[0], view[1], view[2]};
-    requireOption(length(preview.view) > 0, "view", run.arguments.text("view"),
+    const double reach = length(preview.view);
+    requireOption(reach > 1e-6 && reach < 1e6, "view", run.arguments.text("view"),
                   "a direction from the model to the camera, for example 1,-1.6,0.9");
     preview.samples = run.arguments.whole("samples", preview.samples, 1, 64);
     SliceOptions slice;

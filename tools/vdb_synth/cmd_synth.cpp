@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 
 namespace vdbsynth::cli {
@@ -20,6 +21,17 @@ std::vector<std::string> split(const std::string& text) {
         parts.push_back(text.substr(begin, comma - begin));
     parts.push_back(text.substr(begin));
     return parts;
+}
+
+std::string sizeText(const SynthOptions& options) {
+    std::string text;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        char part[40];
+        std::snprintf(part, sizeof part, "%s%.10g%s", axis ? "," : "", options.size[axis],
+                      options.multiple[axis] ? "x" : "");
+        text += part;
+    }
+    return text;
 }
 
 void parseSize(const Arguments& arguments, SynthOptions& options) {
@@ -44,6 +56,7 @@ void parseSize(const Arguments& arguments, SynthOptions& options) {
         options.size[axis] = value;
         options.multiple[axis] = multiple;
     }
+    arguments.note("size", sizeText(options));
 }
 
 void parseBorder(const Arguments& arguments, SynthOptions& options) {
@@ -94,15 +107,7 @@ void synth(Run& run) {
     ModelOptions modelOptions = run.modelOptions();
     modelOptions.halfWidth = 3;
     const LevelSet exemplar = run.load(run.arguments.inputs[0], modelOptions);
-    if (run.arguments.has("exemplar-mask")) {
-        const std::string maskPath = run.arguments.text("exemplar-mask");
-        const std::vector<GridPtr> grids = readVdbGrids(maskPath, run.context);
-        if (grids.size() != 1)
-            throw Error(ErrorCode::BadData, maskPath + ": a mask file holds one grid, this one holds " +
-                                                std::to_string(grids.size()));
-        options.exemplarMask = grids.front();
-        run.noteInput(maskPath);
-    }
+    if (run.arguments.has("exemplar-mask")) options.exemplarMask = run.loadMask("exemplar-mask");
     const SynthResult result = synthesize(exemplar, options, run.context);
     outputs.metadata = run.metadata();
     std::vector<GridPtr> mapGrids;
@@ -117,28 +122,7 @@ void synth(Run& run) {
     run.count("exact_costs_computed", result.stats.exact);
     run.count("index_bytes", result.stats.indexBytes);
     run.count("mean_match_cost", result.stats.meanCost);
-    run.count("active_voxels", activeVoxels(*result.model.grid));
-    run.finish();
-}
-
-void repeat(Run& run) {
-    run.requireInputs(2, 2);
-    const std::vector<std::string> paths = run.outputPaths();
-    requireOutputPaths(paths);
-    const std::string mapPath = run.arguments.inputs[0];
-    if (extensionOf(mapPath) != "vdb")
-        throw Error(ErrorCode::InvalidOption, mapPath + ": a source map is a .vdb file");
-    requireModelPath(run.arguments.inputs[1]);
-    ModelOutputOptions outputs;
-    outputs.adaptivity = run.arguments.real("adaptivity", 0, 0, 1);
-    ModelOptions modelOptions = run.modelOptions();
-    const SourceMap map = readSourceMap(mapPath, run.context);
-    run.noteInput(mapPath);
-    const LevelSet exemplar = run.load(run.arguments.inputs[1], modelOptions);
-    const LevelSet result = repeatSynthesis(map, exemplar, run.context);
-    outputs.metadata = run.metadata();
-    writeModel(result, paths, outputs, run.outputs(), run.context);
-    run.count("active_voxels", activeVoxels(*result.grid));
+    run.describe(result.model);
     run.finish();
 }
 
@@ -157,18 +141,11 @@ const Command kSynth{
       "cut or object, once or for each growing axis; default cut where a domain is recorded"},
      {"exemplar-box", "BOX",
       "domain i,j,k,I,J,K in the exemplar's index space, both corners inclusive (voxels)"},
-     {"exemplar-mask", "FILE.vdb", "take blocks only from where this grid is active"},
+     {"exemplar-mask", "FILE.vdb", "take blocks only from where this grid is active; its box is the domain"},
      {"drift", "D", "how far sources may be from their own place along axes at 1x (voxels), default 0"},
      {"source-map", "[FILE.vdb]", "also write the source map, for repeat; without FILE into the .vdb output",
       false, 0, ".vdb"},
      {"adaptivity", "A", "0 to 1: merge flat parts of a mesh output, default 0"}},
     synth};
-
-const Command kRepeat{"repeat",
-                      "repeat MAP EXEMPLAR -o OUT [options]",
-                      "Apply a saved source map again",
-                      "vdb_synth repeat map.vdb grid.vdb -o again.vdb",
-                      {{"adaptivity", "A", "0 to 1: merge flat parts of a mesh output, default 0"}},
-                      repeat};
 
 }  // namespace vdbsynth::cli

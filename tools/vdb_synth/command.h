@@ -39,6 +39,8 @@ public:
     /// loadModel, noting the file's name and hash for metadata and report.
     LevelSet load(const std::string& path);
     LevelSet load(const std::string& path, const ModelOptions& options);
+    /// Reads the one grid of the mask that an option names. @throw Error InvalidOption (not .vdb), BadData
+    GridPtr loadMask(const std::string& option);
     /// Makes sure that all outputs can be written, before the work; `load` calls it.
     void reserveOutputs();
     /// Notes an input that is not read through `load`.
@@ -47,6 +49,8 @@ public:
     VdbMetadata metadata() const;
     /// Adds a number or text to the report's "counts".
     void count(const std::string& name, const nlohmann::json& value);
+    /// Adds what a resulting level set is to the report: its size to "counts", its band to "quality".
+    void describe(const LevelSet& result);
     /// Writes --report if asked for and renames all outputs into place.
     void finish();
 

@@ -97,6 +97,12 @@ void limitMemory(std::uint64_t bytes) {
 #endif
 }
 
+// What was printed, if it arrived.
+int printed() {
+    if (std::fflush(stdout) == 0) return 0;
+    return fail(Error(ErrorCode::Io, "standard output cannot be written"), "");
+}
+
 int execute(const Command& command, const Arguments& arguments, const SupervisorLine& line) {
     try {
         Run run(command, arguments, line);
@@ -121,6 +127,18 @@ int execute(const Command& command, const Arguments& arguments, const Supervisor
 }
 
 int dispatch(char** argv, const std::string& name, const std::vector<std::string>& words) {
+    if (name.empty()) {
+        std::fprintf(stderr, "%s", overview().c_str());
+        return 2;
+    }
+    if (name == "--help" || name == "-help" || name == "-h" || name == "help") {
+        std::printf("%s", overview().c_str());
+        return printed();
+    }
+    if (name == "--version" || name == "-version") {
+        std::printf("vdb_synth %s (OpenVDB %s)\n", kVersion, kOpenVdbVersion);
+        return printed();
+    }
     const Command* command = nullptr;
     std::vector<std::string> names;
     for (const Command* known : commands()) {
@@ -141,11 +159,11 @@ int dispatch(char** argv, const std::string& name, const std::vector<std::string
         arguments = parseArguments(options, words);
         if (arguments.has("help")) {
             std::printf("%s", helpText(*command).c_str());
-            return 0;
+            return printed();
         }
         if (arguments.has("version")) {
             std::printf("vdb_synth %s (OpenVDB %s)\n", kVersion, kOpenVdbVersion);
-            return 0;
+            return printed();
         }
         mergeConfig(*command, arguments);
     } catch (const Error& error) {
@@ -218,17 +236,5 @@ int main(int argc, char** argv) {
     for (int file = ::open("/dev/null", O_RDWR); file >= 0 && file <= 2;) file = ::open("/dev/null", O_RDWR);
     const std::vector<std::string> words(argv + std::min(argc, 2), argv + argc);
     const std::string first = argc > 1 ? argv[1] : "";
-    if (first.empty()) {
-        std::fprintf(stderr, "%s", cli::overview().c_str());
-        return 2;
-    }
-    if (first == "--help" || first == "-help" || first == "-h" || first == "help") {
-        std::printf("%s", cli::overview().c_str());
-        return 0;
-    }
-    if (first == "--version" || first == "-version") {
-        std::printf("vdb_synth %s (OpenVDB %s)\n", cli::kVersion, cli::kOpenVdbVersion);
-        return 0;
-    }
     return cli::dispatch(argv, first, words);
 }

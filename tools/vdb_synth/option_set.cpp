@@ -6,6 +6,7 @@
 #include <boost/program_options.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 
@@ -38,6 +39,12 @@ bool parseNumber(const std::string& text, double& value) {
     value = std::strtod(text.c_str(), &end);
     return !text.empty() && *end == 0 && std::isfinite(value) &&
            text.find_first_of("xXpP ") == std::string::npos;
+}
+
+// The shortest text that reads back as the same number.
+std::string exact(double value) {
+    char text[32];
+    return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
 std::string number(double value) {
@@ -100,7 +107,9 @@ std::string nearestName(const std::string& word, const std::vector<std::string>&
 
 std::string Arguments::text(const std::string& name, const std::string& fallback) const {
     const auto it = values.find(name);
-    return it == values.end() || it->second.empty() ? fallback : it->second.front();
+    const std::string& value = it == values.end() || it->second.empty() ? fallback : it->second.front();
+    if (!value.empty() && mNormalised.count(name) == 0) note(name, value);
+    return value;
 }
 
 std::vector<std::string> Arguments::all(const std::string& name) const {
@@ -109,12 +118,13 @@ std::vector<std::string> Arguments::all(const std::string& name) const {
 }
 
 int Arguments::whole(const std::string& name, int fallback, int low, int high) const {
-    if (!has(name)) return fallback;
+    if (!has(name)) return note(name, std::to_string(fallback)), fallback;
     double value = 0;
     const bool ok =
         parseNumber(text(name), value) && value == std::floor(value) && value >= low && value <= high;
     requireOption(ok, name, text(name),
                   "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
+    note(name, std::to_string(int(value)));
     return int(value);
 }
 
@@ -128,10 +138,11 @@ std::uint64_t Arguments::wide(const std::string& name, std::uint64_t fallback) c
 }
 
 double Arguments::real(const std::string& name, double fallback, double low, double high) const {
-    if (!has(name)) return fallback;
+    if (!has(name)) return note(name, exact(fallback)), fallback;
     double value = 0;
     const bool ok = parseNumber(text(name), value) && value >= low && value <= high;
     requireOption(ok, name, text(name), "a number from " + number(low) + " to " + number(high));
+    note(name, exact(value));
     return value;
 }
 
@@ -147,6 +158,7 @@ std::array<double, 3> Arguments::triple(const std::string& name,
                       name, text(name), "three numbers with commas, for example 1,2,3");
         if (!last) rest = rest.substr(comma + 1);
     }
+    note(name, exact(result[0]) + "," + exact(result[1]) + "," + exact(result[2]));
     return result;
 }
 
@@ -154,6 +166,7 @@ IndexBox Arguments::box(const std::string& name) const {
     IndexBox box;
     requireOption(parseBox(text(name), box), name, text(name),
                   "six whole numbers i,j,k,I,J,K, every minimum at most its maximum");
+    note(name, boxText(box));
     return box;
 }
 

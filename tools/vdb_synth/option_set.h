@@ -31,6 +31,12 @@ public:
     std::vector<std::string> inputs;
     std::map<std::string, std::vector<std::string>> values;  ///< flags hold one "true"
 
+    /// What the typed readers read, defaults included, each in one form: what a run did, however it was
+    /// typed.
+    const std::map<std::string, std::string>& normalised() const { return mNormalised; }
+    /// Notes an option's normalised value; for commands that parse one themselves.
+    void note(const std::string& name, const std::string& value) const { mNormalised[name] = value; }
+
     bool has(const std::string& name) const { return values.count(name) > 0; }
     std::string text(const std::string& name, const std::string& fallback = "") const;
     std::vector<std::string> all(const std::string& name) const;
@@ -41,6 +47,9 @@ public:
     IndexBox box(const std::string& name) const;
     /// Bytes, with an optional K, M, G or T (powers of 1000).
     std::uint64_t bytes(const std::string& name, std::uint64_t fallback) const;
+
+private:
+    mutable std::map<std::string, std::string> mNormalised;
 };
 
 /// Parses a command line (Boost.Program_options); `-o X`, `--option X`, `--option=X` and `-option X`.

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <fstream>
@@ -28,8 +29,14 @@ ProgressStyle progressStyle(const Arguments& arguments) {
                                                                      : ProgressStyle::Off;
 }
 
+// The machine's memory, or what its control group leaves of it, as in a container or under a job scheduler.
 std::uint64_t presentMemory() {
-    return std::uint64_t(::sysconf(_SC_PHYS_PAGES)) * std::uint64_t(::sysconf(_SC_PAGE_SIZE));
+    std::uint64_t bytes = std::uint64_t(::sysconf(_SC_PHYS_PAGES)) * std::uint64_t(::sysconf(_SC_PAGE_SIZE));
+    for (const char* path : {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
+        std::uint64_t limit = 0;
+        if (std::ifstream(path) >> limit && limit > 0) bytes = std::min(bytes, limit);
+    }
+    return bytes;
 }
 
 // Options that change how a run goes, not what it makes.
@@ -63,7 +70,7 @@ struct Run::Impl {
     ProgressLog progress;
     bool quiet = false, verbose = false, reading = false;
     std::vector<std::pair<std::string, std::string>> inputs{};  // name, hash
-    nlohmann::json counts = nlohmann::json::object();
+    nlohmann::json counts = nlohmann::json::object(), quality{};
     std::chrono::steady_clock::time_point began = std::chrono::steady_clock::now();
 
     nlohmann::json options(const Arguments& arguments, bool normalised) const {
@@ -73,6 +80,9 @@ struct Run::Impl {
                 json[name] = asJson(values);
             else if (!incidental().count(name))
                 json[name] = asJson(isPath(name) ? fileNames(values) : values);
+        if (normalised)
+            for (const auto& [name, value] : arguments.normalised())
+                if (!incidental().count(name) && !isPath(name)) json[name] = value;
         if (!normalised) {
             json["inputs"] = arguments.inputs;
             json.erase("report");
@@ -189,6 +199,29 @@ void Run::count(const std::string& name, const nlohmann::json& value) {
     mImpl->counts[name] = value;
 }
 
+GridPtr Run::loadMask(const std::string& option) {
+    const std::string path = arguments.text(option);
+    if (extensionOf(path) != "vdb")
+        throw Error(ErrorCode::InvalidOption, "--" + option + " " + path + ": a mask is a .vdb file");
+    reserveOutputs();
+    const std::vector<GridPtr> grids = readVdbGrids(path, context);
+    if (grids.size() != 1)
+        throw Error(ErrorCode::BadData,
+                    path + ": a mask file holds one grid, this one holds " + std::to_string(grids.size()));
+    noteInput(path);
+    return grids.front();
+}
+
+void Run::describe(const LevelSet& result) {
+    count("active_voxels", activeVoxels(*result.grid));
+    if (!arguments.has("report")) return;
+    const BandQuality band = measureBand(*result.grid, context);
+    mImpl->quality = {{"gradient_error_mean", band.gradientErrorMean},
+                      {"gradient_error_p99", band.gradientErrorP99},
+                      {"band_gaps", band.missingNeighbours},
+                      {"finite", band.finite}};
+}
+
 void Run::finish() {
     Impl& impl = *mImpl;
     if (arguments.has("report")) {
@@ -208,7 +241,8 @@ void Run::finish() {
             {"seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - impl.began).count()},
             {"peak_bytes", peakMemory()},
             {"stages", stages},
-            {"counts", impl.counts}};
+            {"counts", impl.counts},
+            {"quality", impl.quality}};
         const std::string path = arguments.text("report");
         std::ofstream file(mOutputs->add(path));
         file << report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';

@@ -1,0 +1,191 @@
+// Which grid of a VDB file is the model, and what makes a level set of it.
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/redistance.h"
+#include "libvdbsynth/vdb/vdb_file.h"
+#include "libvdbsynth/vdb/wall.h"
+
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/LevelSetRebuild.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vdbsynth {
+namespace {
+
+bool isLevelSet(const openvdb::FloatGrid& grid) {
+    if (grid.getGridClass() == openvdb::GRID_LEVEL_SET) return true;
+    if (grid.getGridClass() != openvdb::GRID_UNKNOWN || grid.background() <= 0) return false;
+    const ValueRange range = rangeOf(grid);
+    return range.minimum < 0 && range.maximum > 0;
+}
+
+openvdb::FloatGrid::Ptr pickGrid(const std::string& path, const std::vector<GridPtr>& grids,
+                                 const VdbReadOptions& options) {
+    std::string names;
+    openvdb::FloatGrid::Ptr levelSet, fog;
+    for (const GridPtr& grid : grids) {
+        names += (names.empty() ? "" : ", ") + grid->getName() + " (" + grid->valueType() + ")";
+        const openvdb::FloatGrid::Ptr floats = asFloat(grid);
+        if (!options.gridName.empty() && grid->getName() == options.gridName) {
+            if (!floats)
+                throw Error(ErrorCode::BadData, path + ": grid \"" + options.gridName + "\" holds " +
+                                                    grid->valueType() + "; a float or double grid is needed");
+            return floats;
+        }
+        if (!floats) continue;
+        if (isLevelSet(*floats)) {
+            if (!levelSet || (floats->getName() == kSurfaceName && levelSet->getName() != kSurfaceName))
+                levelSet = floats;
+        } else if (!fog) {
+            fog = floats;
+        }
+    }
+    if (!options.gridName.empty())
+        throw Error(ErrorCode::BadData, "--grid " + options.gridName + ": not in " + path + ", which has " +
+                                            (names.empty() ? "no grids" : names));
+    if (options.iso && fog) return fog;
+    if (levelSet) return levelSet;
+    if (fog) return fog;
+    throw Error(ErrorCode::BadData, path + ": no usable grid; a float or double grid is needed, it has " +
+                                        (names.empty() ? "no grids" : names));
+}
+
+void refuseUnusable(const std::string& path, const openvdb::FloatGrid& grid) {
+    if (!grid.transform().isLinear())
+        throw Error(ErrorCode::BadData, path + ": grid \"" + grid.getName() +
+                                            "\" has a frustum transform; resample it to uniform voxels");
+    if (grid.activeVoxelCount() == 0)
+        throw Error(ErrorCode::EmptyInput, path + ": grid \"" + grid.getName() + "\" has no active voxels");
+    if (!rangeOf(grid).finite)
+        throw Error(ErrorCode::BadData,
+                    path + ": grid \"" + grid.getName() + "\" holds NaN or infinite values");
+    const openvdb::Mat4d m = grid.transform().baseMap()->getAffineMap()->getMat4();
+    for (int i = 0; i < 16; ++i)
+        if (!std::isfinite(m.asPointer()[i]))
+            throw Error(ErrorCode::BadData, path + ": grid \"" + grid.getName() +
+                                                "\" has a transform with NaN or infinite values");
+    if (std::abs(m.det()) < 1e-300)
+        throw Error(ErrorCode::BadData,
+                    path + ": grid \"" + grid.getName() + "\" has a transform that flattens space");
+}
+
+// Rotation, mirror and uniform scale keep distances; anything else does not.
+bool keepsDistances(const openvdb::FloatGrid& grid) {
+    const openvdb::Mat4d m = grid.transform().baseMap()->getAffineMap()->getMat4();
+    const openvdb::Mat3d linear = m.getMat3();
+    const openvdb::Mat3d product = linear * linear.transpose();
+    const double s = product(0, 0);
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            if (std::abs(product(i, j) - (i == j ? s : 0)) > 1e-6 * s) return false;
+    return true;
+}
+
+openvdb::FloatGrid::Ptr fogToLevelSet(const std::string& path, const openvdb::FloatGrid& fog, double iso,
+                                      const RunContext& ctx) {
+    const ValueRange range = rangeOf(fog);
+    if (iso <= std::min(range.minimum, double(fog.background())) || iso >= range.maximum)
+        throw Error(ErrorCode::Unusable,
+                    "--iso " + std::to_string(iso) + ": no surface there; the values of \"" + fog.getName() +
+                        "\" in " + path + " run from " +
+                        std::to_string(std::min(range.minimum, double(fog.background()))) + " to " +
+                        std::to_string(range.maximum));
+    openvdb::FloatGrid::Ptr field = fog.deepCopy();
+    for (auto it = field->beginValueAll(); it; ++it) it.setValue(float(iso) - *it);
+    field->tree().root().setBackground(float(iso) - fog.background(), /* updateChildNodes= */ false);
+    return rebuildLevelSet(*field, kHalfWidth, path + ": --iso", ctx);
+}
+
+}  // namespace
+
+FloatGridPtr readVdbFloatGrid(const std::string& path, const std::string& name, const RunContext& ctx) {
+    VdbReadOptions options;
+    options.gridName = name;
+    const openvdb::FloatGrid::Ptr grid = pickGrid(path, readVdbGrids(path, ctx), options);
+    refuseUnusable(path, *grid);
+    return grid;
+}
+
+LevelSet readVdbModel(const std::string& path, const VdbReadOptions& options, const RunContext& ctx) {
+    return modelFromGrids(path, readVdbGrids(path, ctx), options, ctx);
+}
+
+LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& grids,
+                        const VdbReadOptions& options, const RunContext& ctx) {
+    openvdb::FloatGrid::Ptr grid = pickGrid(path, grids, options);
+    refuseUnusable(path, *grid);
+    LevelSet model;
+    std::string domainText;
+    if (const auto meta = grid->getMetadata<openvdb::StringMetadata>(kDomainKey)) domainText = meta->value();
+    model.domainRecorded = parseBox(domainText, model.domain);
+    if (!domainText.empty() && !model.domainRecorded)
+        message(ctx, MessageLevel::Warning,
+                path + ": metadata " + kDomainKey + " \"" + domainText + "\" is not i,j,k,I,J,K; ignored");
+    const bool asFog =
+        !isLevelSet(*grid) || (options.iso && grid->getGridClass() == openvdb::GRID_FOG_VOLUME);
+    if (asFog && !options.iso)
+        throw Error(
+            ErrorCode::Unusable,
+            path + ": grid \"" + grid->getName() + "\" is a " +
+                (grid->getGridClass() == openvdb::GRID_FOG_VOLUME ? "fog volume" : "plain scalar grid") +
+                ", not a level set; say where its surface is with --iso VALUE (its values run from " +
+                std::to_string(rangeOf(*grid).minimum) + " to " + std::to_string(rangeOf(*grid).maximum) +
+                ")");
+    if (!keepsDistances(*grid)) {
+        const Vec3d size = fromVec(grid->voxelSize());
+        const double smallest = std::min({size.x, size.y, size.z});
+        message(ctx, MessageLevel::Note,
+                path + ": voxels are not cubes; resampled to " + std::to_string(smallest));
+        const auto transform = openvdb::math::Transform::createLinearTransform(smallest);
+        if (asFog) {
+            for (auto it = grid->beginValueAll(); it; ++it) it.setValue(float(*options.iso) - *it);
+            grid->tree().root().setBackground(float(*options.iso) - grid->background(), false);
+        }
+        grid = behindWall(ErrorCode::Unusable, path, [&] {
+            return openvdb::tools::levelSetRebuild(*grid, 0.f, kHalfWidth, kHalfWidth, transform.get());
+        });
+        model.domainRecorded = false;
+    } else if (asFog) {
+        grid = fogToLevelSet(path, *grid, *options.iso, ctx);
+    }
+    const double halfWidth = halfWidthOf(*grid);
+    if (!(halfWidth >= 1.5))
+        throw Error(ErrorCode::Unusable,
+                    path + ": its band of " + std::to_string(halfWidth) +
+                        " voxels a side is under 1.5; rebuild the level set with a wider band");
+    model.grid = grid;
+    if (!model.domainRecorded) model.domain = solidBox(*grid, path);
+    stampLevelSet(model);
+    return model;
+}
+
+LevelSet resampled(const LevelSet& model, double voxelSize, const RunContext& ctx) {
+    const double ratio = voxelSizeOf(*model.grid) / voxelSize;
+    requireMemory(ctx, double(model.grid->activeVoxelCount()) * ratio * ratio * 40,
+                  "voxels of " + std::to_string(voxelSize), "use larger ones");
+    Stage stage(ctx, "resampling", 1);
+    LevelSet result;
+    // Scaled in index space: the transform keeps its rotation and origin.
+    const openvdb::math::Transform::Ptr transform = model.grid->transform().copy();
+    transform->preScale(1 / ratio);
+    result.grid = behindWall(ErrorCode::Unusable, "resampling", [&] {
+        return openvdb::tools::levelSetRebuild(*model.grid, 0.f, kHalfWidth, kHalfWidth, transform.get());
+    });
+    throwIfCancelled(ctx);
+    result.domain = solidBox(*result.grid, "the model in voxels of " + std::to_string(voxelSize));
+    if (model.domainRecorded) {
+        for (int axis = 0; axis < 3; ++axis) {
+            result.domain.min[axis] = int(std::lround((model.domain.min[axis] - 0.5) * ratio + 0.5));
+            result.domain.max[axis] = std::max(
+                result.domain.min[axis], int(std::lround((model.domain.max[axis] + 0.5) * ratio - 0.5)));
+        }
+        result.domainRecorded = true;
+    }
+    stampLevelSet(result);
+    stage.advance();
+    return result;
+}
+
+}  // namespace vdbsynth

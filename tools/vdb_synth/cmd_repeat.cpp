@@ -1,0 +1,42 @@
+#include "tools/vdb_synth/command.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/io/path.h"
+#include "libvdbsynth/pipeline/outputs.h"
+#include "libvdbsynth/pipeline/synth.h"
+
+namespace vdbsynth::cli {
+namespace {
+
+void repeat(Run& run) {
+    run.requireInputs(2, 2);
+    const std::vector<std::string> paths = run.outputPaths();
+    requireOutputPaths(paths);
+    const std::string mapPath = run.arguments.inputs[0];
+    if (extensionOf(mapPath) != "vdb")
+        throw Error(ErrorCode::InvalidOption, mapPath + ": a source map is a .vdb file");
+    requireModelPath(run.arguments.inputs[1]);
+    ModelOutputOptions outputs;
+    outputs.adaptivity = run.arguments.real("adaptivity", 0, 0, 1);
+    const ModelOptions modelOptions = run.modelOptions();
+    SourceMap map = readSourceMap(mapPath, run.context);
+    run.noteInput(mapPath);
+    if (run.arguments.has("half-width")) map.halfWidth = float(modelOptions.halfWidth);
+    const LevelSet exemplar = run.load(run.arguments.inputs[1], modelOptions);
+    const LevelSet result = repeatSynthesis(map, exemplar, run.context);
+    outputs.metadata = run.metadata();
+    writeModel(result, paths, outputs, run.outputs(), run.context);
+    run.describe(result);
+    run.finish();
+}
+
+}  // namespace
+
+const Command kRepeat{"repeat",
+                      "repeat MAP EXEMPLAR -o OUT [options]",
+                      "Apply a saved source map again",
+                      "vdb_synth repeat map.vdb grid.vdb -o again.vdb",
+                      {{"adaptivity", "A", "0 to 1: merge flat parts of a mesh output, default 0"}},
+                      repeat};
+
+}  // namespace vdbsynth::cli

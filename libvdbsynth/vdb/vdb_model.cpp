@@ -61,7 +61,10 @@ void refuseUnusable(const std::string& path, const openvdb::FloatGrid& grid) {
     if (!rangeOf(grid).finite)
         throw Error(ErrorCode::BadData,
                     path + ": grid \"" + grid.getName() + "\" holds NaN or infinite values");
-    const openvdb::Mat4d m = grid.transform().baseMap()->getAffineMap()->getMat4();
+    // OpenVDB throws at some maps that flatten space.
+    const openvdb::Mat4d m =
+        behindWall(ErrorCode::BadData, path + ": grid \"" + grid.getName() + "\" has a bad transform",
+                   [&] { return grid.transform().baseMap()->getAffineMap()->getMat4(); });
     for (int i = 0; i < 16; ++i)
         if (!std::isfinite(m.asPointer()[i]))
             throw Error(ErrorCode::BadData, path + ": grid \"" + grid.getName() +

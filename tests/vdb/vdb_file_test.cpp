@@ -221,6 +221,21 @@ TEST_CASE("readVdb: a grid of a kind unknown to OpenVDB is left out with a warni
     CHECK(readVdb(folder.path("a.vdb")).grids.size() == 2);
 }
 
+TEST_CASE("readVdbModel: a transform without size is named", "[vdb][error]") {
+    const test::TemporaryFolder folder;
+    writeVdb(folder.path("a.vdb"), {ball(1, kSurfaceName)}, {});
+    std::string bytes = test::contentOf(folder.path("a.vdb"));
+    const std::size_t map = bytes.find("UniformScaleMap");
+    REQUIRE(map != std::string::npos);
+    const std::string one("\0\0\0\0\0\0\xF0\x3F", 8);
+    const std::size_t first = bytes.find(one, map);
+    for (std::size_t at = first; at < first + 200; ++at)
+        if (bytes.compare(at, 8, one) == 0) bytes.replace(at, 8, std::string(8, '\0'));
+    folder.write("b.vdb", bytes);
+    CHECK(reading(folder.path("b.vdb")).code == int(ErrorCode::BadData));
+    CHECK(test::contains(reading(folder.path("b.vdb")).message, "transform"));
+}
+
 TEST_CASE("resampled: the same solid in other voxels, a recorded domain scaled with it", "[vdb][property]") {
     LevelSet model{ball(0.5, kSurfaceName), {}, false};
     const double volume = solidVoxels(*model.grid) * std::pow(voxelSizeOf(*model.grid), 3);

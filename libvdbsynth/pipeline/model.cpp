@@ -44,7 +44,7 @@ LevelSet loadMesh(const std::string& path, const ModelOptions& options, const Ru
         message(ctx, options.resolution > 0 ? MessageLevel::Detail : MessageLevel::Note, path + text);
     }
     LevelSet model;
-    model.grid = meshToLevelSet(mesh, voxelSize, options.halfWidth, path, ctx);
+    model.grid = meshToSolid(mesh, voxelSize, options.halfWidth, path, options.solid, ctx);
     model.domain = solidBox(*model.grid, path);
     stampLevelSet(model);
     return model;

@@ -1,6 +1,7 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/vdb/level_set.h"
+#include "libvdbsynth/vdb/mesh_conversion.h"
 
 #include <optional>
 #include <string>
@@ -8,10 +9,11 @@
 namespace vdbsynth {
 
 struct ModelOptions {
-    double voxelSize = 0;  ///< [world], above 0; 0: by resolution. Meshes only.
+    double voxelSize = 0;  ///< [world], above 0; 0: by resolution. A VDB is resampled.
     int resolution = 0;    ///< voxels along the mesh's longest side, 2..100000; 0: kDefaultResolution, with a
-                           ///< note. Meshes only.
+                           ///< note. A VDB is resampled.
     double halfWidth = 3;  ///< [voxels] of the level set made from a mesh, 1.5..100
+    SolidOptions solid;    ///< what to make of meshes that do not bound a solid
     std::string grid;      ///< which grid of a VDB file; empty: see VdbReadOptions
     std::optional<double> iso;  ///< makes a fog volume a solid
 };

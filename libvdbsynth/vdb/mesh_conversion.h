@@ -20,6 +20,35 @@ namespace vdbsynth {
 FloatGridPtr meshToLevelSet(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
                             const RunContext& ctx = {});
 
+/// What to make of a mesh that does not bound a solid.
+enum class OpenMesh {
+    Close,  ///< a solid: inside is where the generalised winding number is over one half
+    Shell   ///< a sheet of some thickness about the faces, of any mesh
+};
+
+struct SolidOptions {
+    OpenMesh open = OpenMesh::Close;
+    double thickness = 0;  ///< [world] of a shell, above 0
+};
+
+/// A level set of any mesh. One that bounds a solid, perhaps after vertices on one place were welded and
+/// faces turned to agree, goes to meshToLevelSet. Any other (open, with edges of three faces, of one-sided
+/// parts) gets its sign from the generalised winding number, closed smoothly across its openings, with a
+/// warning that says what was found.
+/// @throw Error InvalidOption (--thickness), Unusable (it encloses next to nothing: a sheet), Memory,
+/// Cancelled
+/// @par Cost    as meshToLevelSet; with winding numbers a few microseconds for each voxel at the surface more
+/// @par Repeats same bits for any number of threads
+FloatGridPtr meshToSolid(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
+                         const SolidOptions& options = {}, const RunContext& ctx = {});
+
+/// For meshToSolid. A field about faces in index space, negative inside by the winding number, its values
+/// distances [voxels] near the faces; its zero level also closes openings. No level set yet.
+/// @throw Error Unusable (most of its area has no inside: a sheet)
+FloatGridPtr soupToField(const Mesh& indexMesh, const std::string& name, const RunContext& ctx = {});
+/// The same for a sheet of a thickness [voxels].
+FloatGridPtr sheetToField(const Mesh& indexMesh, double thickness, const RunContext& ctx = {});
+
 struct MeshingOptions {
     double adaptivity =
         0.0;  ///< 0..1: how far flat regions may be merged; 0 keeps about two triangles a surface voxel

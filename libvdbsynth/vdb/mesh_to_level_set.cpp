@@ -1,5 +1,6 @@
 #include "libvdbsynth/vdb/interrupter.h"
 #include "libvdbsynth/vdb/mesh_conversion.h"
+#include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/wall.h"
 
 #include "libvdbsynth/base/parallel.h"
@@ -47,19 +48,14 @@ void checkEnclosed(const openvdb::FloatGrid& grid, const Mesh& mesh, double voxe
                                              "faces' volume; its shells overlap or repeat, unite them");
     throw Error(ErrorCode::Unusable,
                 name + ": " + std::to_string(summary.openEdges) +
-                    " open edges; close the mesh (the level set encloses " +
+                    " open edges; close the mesh or make a shell with --open shell --thickness W (the level "
+                    "set encloses " +
                     std::to_string(int(std::abs(volume) > 0 ? 100 * enclosed / std::abs(volume) : 0)) +
                     " % of the volume that the faces suggest)");
 }
 
-}  // namespace
-
-FloatGridPtr meshToLevelSet(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
-                            const RunContext& ctx) {
-    requireOption(std::isfinite(voxelSize) && voxelSize > 0, "voxel-size", std::to_string(voxelSize),
-                  "above 0");
-    requireOption(halfWidth >= 1.5 && halfWidth <= 1000, "half-width", std::to_string(halfWidth),
-                  "from 1.5 to 1000 voxels");
+void requireBandMemory(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
+                       const RunContext& ctx) {
     double area = 0;
     for (const Triangle& t : mesh.triangles)
         area += double(length(
@@ -72,6 +68,79 @@ FloatGridPtr meshToLevelSet(const Mesh& mesh, double voxelSize, double halfWidth
     requireMemory(ctx, area / (voxelSize * voxelSize) * 2 * halfWidth * kBytesPerBandVoxel,
                   name + ": a level set at voxel size " + std::to_string(voxelSize),
                   "use a larger --voxel-size or a smaller --resolution");
+}
+
+// The mesh as the sign rule of a solid wants it, and what was wrong with it.
+struct Prepared {
+    Mesh mesh;
+    bool balanced = false;
+    std::string found;
+};
+
+Prepared prepare(const Mesh& mesh) {
+    Prepared prepared;
+    prepared.mesh = mesh;
+    const std::size_t welded = weldVertices(prepared.mesh);
+    prepared.balanced = welded > 0 && isBalanced(prepared.mesh);
+    if (prepared.balanced) return prepared;
+    const std::size_t turned = orientFaces(prepared.mesh);
+    prepared.balanced = isBalanced(prepared.mesh);
+    const MeshSummary summary = summarize(prepared.mesh);
+    const auto add = [&](std::size_t count, const char* what) {
+        if (count > 0) prepared.found += (prepared.found.empty() ? "" : ", ") + std::to_string(count) + what;
+    };
+    add(summary.openEdges, " open edges");
+    add(summary.nonManifoldEdges, " edges of more than two faces");
+    add(turned, " faces that looked the wrong way");
+    return prepared;
+}
+
+// A field in index space, voxels as units, as a level set in the world.
+FloatGridPtr rebuilt(const FloatGridPtr& field, double voxelSize, double halfWidth, const std::string& name,
+                     const RunContext& ctx) {
+    field->setTransform(openvdb::math::Transform::createLinearTransform(voxelSize));
+    return rebuildLevelSet(*field, float(halfWidth), name + ":", ctx);
+}
+
+}  // namespace
+
+FloatGridPtr meshToSolid(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
+                         const SolidOptions& options, const RunContext& ctx) {
+    const bool shell = options.open == OpenMesh::Shell;
+    if (!shell && isBalanced(mesh)) return meshToLevelSet(mesh, voxelSize, halfWidth, name, ctx);
+    requireOption(!shell || (std::isfinite(options.thickness) && options.thickness > 0), "thickness",
+                  std::to_string(options.thickness), "above 0 (world)");
+    requireOption(!shell || options.thickness >= voxelSize, "thickness", std::to_string(options.thickness),
+                  "at least a voxel, which is " + std::to_string(voxelSize));
+    Prepared prepared;
+    if (shell)
+        prepared.mesh = mesh;
+    else
+        prepared = prepare(mesh);
+    if (!prepared.found.empty())
+        message(
+            ctx, MessageLevel::Warning,
+            name + ": " + prepared.found +
+                (prepared.balanced ? "; turned" : "; inside is where the faces wind round more than half"));
+    if (prepared.balanced) return meshToLevelSet(prepared.mesh, voxelSize, halfWidth, name, ctx);
+    requireBandMemory(mesh, voxelSize, halfWidth + options.thickness / voxelSize, name, ctx);
+    Stage stage(ctx, "mesh to level set", 1);
+    for (Vec3f& p : prepared.mesh.points) p = cast<float>(cast<double>(p) * (1 / voxelSize));
+    const FloatGridPtr field = shell ? sheetToField(prepared.mesh, options.thickness / voxelSize, ctx)
+                                     : soupToField(prepared.mesh, name, ctx);
+    stage.advance();
+    const FloatGridPtr grid = rebuilt(field, voxelSize, halfWidth, name, ctx);
+    if (!shell) checkEnclosed(*grid, mesh, voxelSize, name);
+    return grid;
+}
+
+FloatGridPtr meshToLevelSet(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
+                            const RunContext& ctx) {
+    requireOption(std::isfinite(voxelSize) && voxelSize > 0, "voxel-size", std::to_string(voxelSize),
+                  "above 0");
+    requireOption(halfWidth >= 1.5 && halfWidth <= 1000, "half-width", std::to_string(halfWidth),
+                  "from 1.5 to 1000 voxels");
+    requireBandMemory(mesh, voxelSize, halfWidth, name, ctx);
     Stage stage(ctx, "mesh to level set", 1);
     std::vector<openvdb::Vec3s> points;
     points.reserve(mesh.points.size());

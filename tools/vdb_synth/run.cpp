@@ -158,6 +158,13 @@ ModelOptions Run::modelOptions() const {
     if (arguments.has("voxel-size") && arguments.has("resolution"))
         throw Error(ErrorCode::InvalidOption, "--voxel-size and --resolution: give one of them");
     options.halfWidth = arguments.real("half-width", 3, 1.5, 100);
+    const std::string open = arguments.text("open", "close");
+    requireOption(open == "close" || open == "shell", "open", open, "close or shell");
+    if (open == "shell") options.solid.open = OpenMesh::Shell;
+    options.solid.thickness = arguments.has("thickness") ? arguments.real("thickness", 0, 1e-30, 1e30) : 0;
+    if ((open == "shell") != arguments.has("thickness"))
+        throw Error(ErrorCode::InvalidOption,
+                    "--open shell and --thickness W: give both, the thickness of the shell in world units");
     options.grid = arguments.text("grid");
     if (arguments.has("iso")) options.iso = arguments.real("iso", 0, -1e30, 1e30);
     return options;

@@ -106,7 +106,7 @@ double solidShare(const Mesh& mesh, const WindingNumber& winding) {
         if (!(area > 0)) continue;
         const Vec3d off = normal * (1e-3 / std::sqrt(area));
         const double mean = (winding.at(middle + off) + winding.at(middle - off)) / 2;
-        solid += mean >= 0.1 ? area : 0;
+        solid += mean >= 0.2 ? area : 0;
         all += area;
     }
     return all > 0 ? solid / all : 0;

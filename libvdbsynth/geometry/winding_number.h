@@ -42,7 +42,7 @@ private:
 };
 
 /// Share of a mesh's area that has clearly an inside and an outside: where the winding numbers of the two
-/// sides of a face have a mean from 0.1 on (1/2 on a closed mesh, 0 on a flat sheet). From at most 4096
+/// sides of a face have a mean from 0.2 on (1/2 on a closed mesh, 0 on a flat sheet). From at most 4096
 /// faces.
 /// @par Repeats yes
 double solidShare(const Mesh& mesh, const WindingNumber& winding);

@@ -99,7 +99,7 @@ Prepared prepare(const Mesh& mesh) {
 FloatGridPtr rebuilt(const FloatGridPtr& field, double voxelSize, double halfWidth, const std::string& name,
                      const RunContext& ctx) {
     field->setTransform(openvdb::math::Transform::createLinearTransform(voxelSize));
-    return rebuildLevelSet(*field, float(halfWidth), name + ":", ctx);
+    return rebuildLevelSet(*field, float(halfWidth), name, ctx);
 }
 
 }  // namespace
@@ -129,9 +129,7 @@ FloatGridPtr meshToSolid(const Mesh& mesh, double voxelSize, double halfWidth, c
     const FloatGridPtr field = shell ? sheetToField(prepared.mesh, options.thickness / voxelSize, ctx)
                                      : soupToField(prepared.mesh, name, ctx);
     stage.advance();
-    const FloatGridPtr grid = rebuilt(field, voxelSize, halfWidth, name, ctx);
-    if (!shell) checkEnclosed(*grid, mesh, voxelSize, name);
-    return grid;
+    return rebuilt(field, voxelSize, halfWidth, name, ctx);
 }
 
 FloatGridPtr meshToLevelSet(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,

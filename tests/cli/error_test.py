@@ -103,7 +103,7 @@ class BadFiles(CliTest):
         self.write("points.obj", "v 0 0 0\nv 1 1 1\n")
         self.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
         self.fails(1, "points.obj: no faces", "convert", "points.obj", "-o", "x.vdb")
-        self.fails(1, "flat.obj: 3 open edges; close the mesh", "convert", "flat.obj", "-o", "x.vdb")
+        self.fails(1, "flat.obj: a sheet with 3 open edges", "convert", "flat.obj", "-o", "x.vdb")
         self.fails(1, "--block 32: larger than the exemplar", "synth", "g.vdb", "-o", "x.vdb", "--size", "2x,2x,2x", "--block", 32)
         self.fails(1, "smaller than the exemplar's domain", "synth", "g.vdb", "-o", "x.vdb", "--size", "20,24,24")
         self.fails(3, "--grid rock", "convert", "g.vdb", "-o", "x.vdb", "--grid", "rock")

@@ -57,6 +57,12 @@ bool isBalanced(const Mesh& mesh);
 /// @par Cost    O(vertices log vertices)   @par Repeats yes
 std::size_t weldVertices(Mesh& mesh);
 
+/// Leaves one of several faces on the same corners, whatever their orientation: double-sided faces become
+/// single, faces given twice count once. Quads become triangles; faces that use a corner twice go.
+/// @return number of faces left out, the ones without area not counted
+/// @par Cost    O(faces log faces)   @par Repeats yes
+std::size_t removeDuplicateFaces(Mesh& mesh);
+
 /// Turns faces so that those that share an edge run the same way and the mesh as a whole looks outward. Each
 /// part that hangs together by edges of two faces keeps the side that most of its area had; where there is no
 /// clear majority, the side with positive volume. Quads become triangles.

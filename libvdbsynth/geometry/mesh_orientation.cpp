@@ -156,6 +156,31 @@ std::size_t weldVertices(Mesh& mesh) {
     return welded;
 }
 
+std::size_t removeDuplicateFaces(Mesh& mesh) {
+    std::vector<Triangle> triangles = triangulated(mesh);
+    mesh.quads.clear();
+    mesh.triangles.clear();
+    std::vector<Triangle> keys = triangles;
+    for (Triangle& key : keys) std::sort(key.begin(), key.end());
+    std::vector<std::uint32_t> order(triangles.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(), [&keys](std::uint32_t a, std::uint32_t b) {
+        return keys[a] != keys[b] ? keys[a] < keys[b] : a < b;
+    });
+    std::vector<char> keep(triangles.size(), 0);
+    std::size_t duplicates = 0;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const Triangle& key = keys[order[i]];
+        if (key[0] == key[1] || key[1] == key[2]) continue;
+        const bool again = i > 0 && keys[order[i - 1]] == key;
+        keep[order[i]] = !again;
+        duplicates += again ? 1 : 0;
+    }
+    for (std::size_t i = 0; i < triangles.size(); ++i)
+        if (keep[i]) mesh.triangles.push_back(triangles[i]);
+    return duplicates;
+}
+
 std::size_t orientFaces(Mesh& mesh) {
     mesh.triangles = triangulated(mesh);
     mesh.quads.clear();

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <utility>
 
 namespace vdbsynth {
 namespace {
@@ -121,26 +122,37 @@ std::string stlBytes(const Mesh& mesh) {
 
 }  // namespace
 
+namespace {
+
+bool formatOfExtension(const std::string& extension, MeshFormat& format) {
+    static const std::pair<const char*, MeshFormat> formats[] = {{"obj", MeshFormat::Obj},
+                                                                 {"ply", MeshFormat::Ply},
+                                                                 {"stl", MeshFormat::Stl},
+                                                                 {"off", MeshFormat::Off},
+                                                                 {"mesh", MeshFormat::Medit}};
+    for (const auto& [name, value] : formats)
+        if (extension == name) {
+            format = value;
+            return true;
+        }
+    return false;
+}
+
+}  // namespace
+
 bool meshFormatOf(const std::string& path, MeshFormat& format) {
-    const std::string extension = extensionOf(path);
-    if (extension == "obj")
-        format = MeshFormat::Obj;
-    else if (extension == "ply")
-        format = MeshFormat::Ply;
-    else if (extension == "stl")
-        format = MeshFormat::Stl;
-    else if (extension == "off")
-        format = MeshFormat::Off;
-    else
-        return false;
-    return true;
+    return formatOfExtension(readExtensionOf(path), format);
+}
+
+bool writableMeshFormatOf(const std::string& path, MeshFormat& format) {
+    return formatOfExtension(extensionOf(path), format) && format != MeshFormat::Medit;
 }
 
 Mesh readMesh(const std::string& path, const RunContext& ctx) {
     MeshFormat format{};
     if (!meshFormatOf(path, format))
         throw Error(ErrorCode::InvalidOption,
-                    path + ": unknown extension; meshes are .obj, .ply, .stl or .off");
+                    path + ": unknown extension; meshes are .obj, .ply, .stl, .off or .mesh");
     Stage stage(ctx, "reading " + path, 2, /* reading= */ true);
     const std::string content = readWholeFile(path);
     stage.advance();
@@ -158,6 +170,9 @@ Mesh readMesh(const std::string& path, const RunContext& ctx) {
             break;
         case MeshFormat::Off:
             mesh = readOff(path, content);
+            break;
+        case MeshFormat::Medit:
+            mesh = readMedit(path, content);
             break;
     }
     checkFaces(path, mesh);
@@ -180,6 +195,8 @@ void writeMesh(const std::string& path, MeshFormat format, const Mesh& mesh) {
         case MeshFormat::Off:
             output.write(offText(mesh));
             break;
+        case MeshFormat::Medit:
+            throw Error(ErrorCode::InvalidOption, path + ": MEDIT meshes are read, not written");
     }
     output.finish();
 }

@@ -8,10 +8,13 @@
 namespace vdbsynth {
 
 /// Kinds of mesh file, by extension.
-enum class MeshFormat { Obj, Ply, Stl, Off };
+enum class MeshFormat { Obj, Ply, Stl, Off, Medit };
 
-/// True, with the format, if the path ends in .obj, .ply, .stl or .off (any case).
+/// True, with the format, if the path ends in .obj, .ply, .stl, .off or .mesh (MEDIT), any case; for a path
+/// to read also with .gz after that.
 bool meshFormatOf(const std::string& path, MeshFormat& format);
+/// The formats that writeMesh writes: all but MEDIT, never .gz.
+bool writableMeshFormatOf(const std::string& path, MeshFormat& format);
 
 /// Reads a triangle or polygon mesh. Strict: counts are checked against the file's size before anything
 /// is allocated, indices against the vertices, coordinates for finiteness. STL corners with the same bits

@@ -8,6 +8,7 @@ namespace vdbsynth {
 // One reader a format, behind readMesh (mesh_file.h), which checks indices and faces of what they
 // return. `path` is for messages, `content` is the whole file.
 // @throw Error BadData
+Mesh readMedit(const std::string& path, const std::string& content);
 Mesh readObj(const std::string& path, const std::string& content);
 Mesh readOff(const std::string& path, const std::string& content);
 Mesh readPly(const std::string& path, const std::string& content);

@@ -20,6 +20,11 @@ std::string extensionOf(const std::string& path) {
     return extension;
 }
 
+std::string readExtensionOf(const std::string& path) {
+    const std::string extension = extensionOf(path);
+    return extension == "gz" ? extensionOf(path.substr(0, path.size() - 3)) : extension;
+}
+
 std::string folderOf(const std::string& path) {
     const std::size_t slash = path.rfind('/');
     if (slash == std::string::npos) return ".";

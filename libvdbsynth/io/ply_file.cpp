@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 
 namespace vdbsynth {
@@ -102,6 +103,12 @@ Header readHeader(const std::string& path, const std::string& content) {
         scanner.skipLine();
     }
     scanner.fail("the header has no end_header; the file is truncated");
+}
+
+std::string shortText(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.10g", value);
+    return text;
 }
 
 // Reads numbers one after another, from text or bytes.
@@ -232,6 +239,16 @@ void readVertices(Body& body, const Element& element, Mesh& mesh) {
     }
 }
 
+// One index of a list. @return -1 for a negative one, which ends a strip
+std::int64_t readIndex(Body& body, const Property& property, const std::string& what, std::size_t vertices) {
+    const double index = body.number(property.value);
+    if (index == -1) return -1;
+    if (!(index >= 0) || index >= double(vertices) || index != std::floor(index))
+        body.fail(what + " uses vertex " + shortText(index) + " of " + std::to_string(vertices) +
+                  " (counting from 0)");
+    return std::int64_t(index);
+}
+
 void readFaces(Body& body, const Element& element, std::size_t vertices, Mesh& mesh) {
     std::vector<std::uint32_t> corners;
     for (std::int64_t f = 0; f < element.count; ++f)
@@ -242,15 +259,42 @@ void readFaces(Body& body, const Element& element, std::size_t vertices, Mesh& m
             }
             const std::int64_t count = body.listLength(property);
             corners.clear();
+            const std::string what = "face " + std::to_string(f);
             for (std::int64_t c = 0; c < count; ++c) {
-                const double index = body.number(property.value);
-                if (!(index >= 0) || index >= double(vertices))
-                    body.fail("face " + std::to_string(f) + " uses vertex " +
-                              std::to_string(std::int64_t(index)) + " of " + std::to_string(vertices) +
-                              " (counting from 0)");
+                const std::int64_t index = readIndex(body, property, what, vertices);
+                if (index < 0) body.fail(what + " uses vertex -1");
                 corners.push_back(std::uint32_t(index));
             }
             appendPolygon(mesh, corners.data(), corners.size());
+        }
+}
+
+// Triangle strips: every corner makes a face with the two before it, each second one turned; -1 begins anew.
+void readStrips(Body& body, const Element& element, std::size_t vertices, Mesh& mesh) {
+    for (std::int64_t s = 0; s < element.count; ++s)
+        for (const Property& property : element.properties) {
+            if (!property.list || (property.name != "vertex_indices" && property.name != "vertex_index")) {
+                body.skip(property);
+                continue;
+            }
+            const std::int64_t count = body.listLength(property);
+            std::uint32_t before[2] = {0, 0};
+            std::int64_t length = 0;
+            for (std::int64_t c = 0; c < count; ++c) {
+                const std::int64_t index = readIndex(body, property, "a strip", vertices);
+                if (index < 0) {
+                    length = 0;
+                    continue;
+                }
+                const std::uint32_t corner = std::uint32_t(index);
+                const bool degenerate = corner == before[0] || corner == before[1] || before[0] == before[1];
+                if (length >= 2 && !degenerate)
+                    mesh.triangles.push_back(length % 2 == 0 ? Triangle{before[0], before[1], corner}
+                                                             : Triangle{before[1], before[0], corner});
+                before[0] = before[1];
+                before[1] = corner;
+                ++length;
+            }
         }
 }
 
@@ -266,6 +310,8 @@ Mesh readPly(const std::string& path, const std::string& content) {
             readVertices(body, element, mesh);
         else if (element.name == "face")
             readFaces(body, element, mesh.points.size(), mesh);
+        else if (element.name == "tristrips")
+            readStrips(body, element, mesh.points.size(), mesh);
         else
             for (std::int64_t i = 0; i < element.count; ++i)
                 for (const Property& property : element.properties) body.skip(property);

@@ -1,6 +1,7 @@
 #include "libvdbsynth/io/text_scanner.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/io/gzip.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -33,7 +34,7 @@ std::string readWholeFile(const std::string& path) {
     while (file.read(buffer, sizeof buffer) || file.gcount() > 0)
         text.append(buffer, std::size_t(file.gcount()));
     if (file.bad()) throw Error(ErrorCode::Io, path + ": reading failed");
-    return text;
+    return isGzip(text) ? gunzip(path, text) : text;
 }
 
 TextScanner::TextScanner(const std::string& path, std::string_view text, char comment, std::size_t start)

@@ -6,7 +6,7 @@
 
 namespace vdbsynth {
 
-/// Whole content of a file.
+/// Whole content of a file, unpacked if it is a gzip file whatever its name.
 /// @throw Error Io (missing, a directory, not readable)
 std::string readWholeFile(const std::string& path);
 

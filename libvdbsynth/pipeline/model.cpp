@@ -74,13 +74,14 @@ bool isMeshPath(const std::string& path) {
 }
 
 bool isModelPath(const std::string& path) {
-    return extensionOf(path) == "vdb" || isMeshPath(path);
+    return readExtensionOf(path) == "vdb" || isMeshPath(path);
 }
 
 void requireModelPath(const std::string& path) {
     if (isModelPath(path)) return;
-    throw Error(ErrorCode::InvalidOption,
-                path + ": unknown extension; models are .vdb, .obj, .ply, .stl or .off");
+    throw Error(
+        ErrorCode::InvalidOption,
+        path + ": unknown extension; models are .vdb, .obj, .ply, .stl, .off or .mesh, each also with .gz");
 }
 
 LevelSet loadModel(const std::string& path, const ModelOptions& options, const RunContext& ctx) {

@@ -32,7 +32,7 @@ void writeOne(const LevelSet& model, const std::string& path, const std::string&
         mesh = levelSetToMesh(*model.grid, meshing, ctx);
     }
     MeshFormat format{};
-    meshFormatOf(path, format);
+    writableMeshFormatOf(path, format);
     writeMesh(temporary, format, *mesh);
 }
 
@@ -41,7 +41,7 @@ void writeOne(const LevelSet& model, const std::string& path, const std::string&
 void requireOutputPaths(const std::vector<std::string>& paths) {
     for (const std::string& path : paths) {
         MeshFormat format{};
-        if (extensionOf(path) != "vdb" && !meshFormatOf(path, format))
+        if (extensionOf(path) != "vdb" && !writableMeshFormatOf(path, format))
             throw Error(ErrorCode::InvalidOption,
                         path + ": unknown extension; outputs are .vdb, .obj, .ply, .stl or .off");
     }

@@ -17,8 +17,8 @@ namespace {
 // around it: bytes seen on bunny, dragon and nefertiti at 100 to 1000 voxels.
 constexpr double kBytesPerBandVoxel = 24;
 
-void checkEnclosed(const openvdb::FloatGrid& grid, const Mesh& mesh, double voxelSize,
-                   const std::string& name) {
+// Empty if a level set encloses what its mesh promises, else what is wrong.
+std::string missingVolume(const openvdb::FloatGrid& grid, const Mesh& mesh, double voxelSize) {
     const double enclosed = solidVoxels(grid) * voxelSize * voxelSize * voxelSize;
     double volume = 0, area = 0;
     const Vec3d origin =
@@ -36,22 +36,20 @@ void checkEnclosed(const openvdb::FloatGrid& grid, const Mesh& mesh, double voxe
     }
     // Voxel centres that lie on a sheet by chance count as inside: about a voxel of depth over its area.
     const bool crumbs = enclosed < 1.5 * area * voxelSize && enclosed > 2 * std::abs(volume);
-    if (!crumbs && enclosed >= 0.5 * std::abs(volume)) return;
+    if (!crumbs && enclosed >= 0.5 * std::abs(volume) && enclosed > 0) return "";
     const MeshSummary summary = summarize(mesh);
-    if (summary.openEdges == 0 && enclosed > 0 && enclosed >= 0.5 * std::abs(volume)) return;
+    if (summary.openEdges == 0 && enclosed > 0 && enclosed >= 0.5 * std::abs(volume)) return "";
     if (summary.openEdges == 0 && std::abs(volume) > 0 && std::abs(volume) < area * voxelSize)
-        throw Error(ErrorCode::Unusable,
-                    name + ": thinner than a voxel; use a smaller --voxel-size or a larger --resolution");
+        return "thinner than a voxel; use a smaller --voxel-size or a larger --resolution";
     if (summary.openEdges == 0)
-        throw Error(ErrorCode::Unusable, name +
-                                             ": no open edges, but the level set encloses under half of the "
-                                             "faces' volume; its shells overlap or repeat, unite them");
-    throw Error(ErrorCode::Unusable,
-                name + ": " + std::to_string(summary.openEdges) +
-                    " open edges; close the mesh or make a shell with --open shell --thickness W (the level "
-                    "set encloses " +
-                    std::to_string(int(std::abs(volume) > 0 ? 100 * enclosed / std::abs(volume) : 0)) +
-                    " % of the volume that the faces suggest)");
+        return "no open edges, but the level set encloses under half of the faces' volume; its shells "
+               "overlap "
+               "or repeat, unite them or make a shell with --open shell --thickness W";
+    return std::to_string(summary.openEdges) +
+           " open edges; close the mesh or make a shell with --open shell --thickness W (the level set "
+           "encloses " +
+           std::to_string(int(std::abs(volume) > 0 ? 100 * enclosed / std::abs(volume) : 0)) +
+           " % of the volume that the faces suggest)";
 }
 
 void requireBandMemory(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
@@ -81,8 +79,9 @@ Prepared prepare(const Mesh& mesh) {
     Prepared prepared;
     prepared.mesh = mesh;
     const std::size_t welded = weldVertices(prepared.mesh);
-    prepared.balanced = welded > 0 && isBalanced(prepared.mesh);
-    if (prepared.balanced) return prepared;
+    const std::size_t duplicates = removeDuplicateFaces(prepared.mesh);
+    prepared.balanced = welded > 0 && duplicates == 0 && isBalanced(prepared.mesh);
+    if (prepared.balanced || prepared.mesh.faceCount() == 0) return prepared;
     const std::size_t turned = orientFaces(prepared.mesh);
     prepared.balanced = isBalanced(prepared.mesh);
     const MeshSummary summary = summarize(prepared.mesh);
@@ -91,6 +90,7 @@ Prepared prepare(const Mesh& mesh) {
     };
     add(summary.openEdges, " open edges");
     add(summary.nonManifoldEdges, " edges of more than two faces");
+    add(duplicates, " faces given twice");
     add(turned, " faces that looked the wrong way");
     return prepared;
 }
@@ -102,42 +102,15 @@ FloatGridPtr rebuilt(const FloatGridPtr& field, double voxelSize, double halfWid
     return rebuildLevelSet(*field, float(halfWidth), name, ctx);
 }
 
-}  // namespace
-
-FloatGridPtr meshToSolid(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
-                         const SolidOptions& options, const RunContext& ctx) {
-    const bool shell = options.open == OpenMesh::Shell;
-    if (!shell && isBalanced(mesh)) return meshToLevelSet(mesh, voxelSize, halfWidth, name, ctx);
-    requireOption(!shell || (std::isfinite(options.thickness) && options.thickness > 0), "thickness",
-                  std::to_string(options.thickness), "above 0 (world)");
-    requireOption(!shell || options.thickness >= voxelSize, "thickness", std::to_string(options.thickness),
-                  "at least a voxel, which is " + std::to_string(voxelSize));
-    Prepared prepared;
-    if (shell)
-        prepared.mesh = mesh;
-    else
-        prepared = prepare(mesh);
-    if (!prepared.found.empty())
-        message(
-            ctx, MessageLevel::Warning,
-            name + ": " + prepared.found +
-                (prepared.balanced ? "; turned" : "; inside is where the faces wind round more than half"));
-    if (prepared.balanced) return meshToLevelSet(prepared.mesh, voxelSize, halfWidth, name, ctx);
-    requireBandMemory(mesh, voxelSize, halfWidth + options.thickness / voxelSize, name, ctx);
-    Stage stage(ctx, "mesh to level set", 1);
-    for (Vec3f& p : prepared.mesh.points) p = cast<float>(cast<double>(p) * (1 / voxelSize));
-    const FloatGridPtr field = shell ? sheetToField(prepared.mesh, options.thickness / voxelSize, ctx)
-                                     : soupToField(prepared.mesh, name, ctx);
-    stage.advance();
-    return rebuilt(field, voxelSize, halfWidth, name, ctx);
-}
-
-FloatGridPtr meshToLevelSet(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
-                            const RunContext& ctx) {
+void checkOptions(double voxelSize, double halfWidth) {
     requireOption(std::isfinite(voxelSize) && voxelSize > 0, "voxel-size", std::to_string(voxelSize),
                   "above 0");
     requireOption(halfWidth >= 1.5 && halfWidth <= 1000, "half-width", std::to_string(halfWidth),
                   "from 1.5 to 1000 voxels");
+}
+
+FloatGridPtr openVdbLevelSet(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
+                             const RunContext& ctx) {
     requireBandMemory(mesh, voxelSize, halfWidth, name, ctx);
     Stage stage(ctx, "mesh to level set", 1);
     std::vector<openvdb::Vec3s> points;
@@ -157,10 +130,53 @@ FloatGridPtr meshToLevelSet(const Mesh& mesh, double voxelSize, double halfWidth
             static_cast<openvdb::util::NullInterrupter&>(interrupter), *transform, points, triangles, quads,
             float(halfWidth));
         throwIfCancelled(ctx);
-        checkEnclosed(*grid, mesh, voxelSize, name);
         stage.advance();
         return FloatGridPtr(grid);
     });
+}
+
+}  // namespace
+
+FloatGridPtr meshToSolid(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
+                         const SolidOptions& options, const RunContext& ctx) {
+    checkOptions(voxelSize, halfWidth);
+    const bool shell = options.open == OpenMesh::Shell;
+    requireOption(!shell || (std::isfinite(options.thickness) && options.thickness > 0), "thickness",
+                  std::to_string(options.thickness), "above 0 (world)");
+    requireOption(!shell || options.thickness >= voxelSize, "thickness", std::to_string(options.thickness),
+                  "at least a voxel, which is " + std::to_string(voxelSize));
+    if (!shell && isBalanced(mesh)) {
+        const FloatGridPtr grid = openVdbLevelSet(mesh, voxelSize, halfWidth, name, ctx);
+        if (missingVolume(*grid, mesh, voxelSize).empty()) return grid;
+    }
+    Prepared prepared;
+    if (shell)
+        prepared.mesh = mesh;
+    else
+        prepared = prepare(mesh);
+    if (prepared.mesh.faceCount() == 0) throw Error(ErrorCode::Unusable, name + ": no face has an area");
+    if (!prepared.found.empty())
+        message(
+            ctx, MessageLevel::Warning,
+            name + ": " + prepared.found +
+                (prepared.balanced ? "; turned" : "; inside is where the faces wind round more than half"));
+    if (prepared.balanced) return meshToLevelSet(prepared.mesh, voxelSize, halfWidth, name, ctx);
+    requireBandMemory(mesh, voxelSize, halfWidth + options.thickness / voxelSize, name, ctx);
+    Stage stage(ctx, "mesh to level set", 1);
+    for (Vec3f& p : prepared.mesh.points) p = cast<float>(cast<double>(p) * (1 / voxelSize));
+    const FloatGridPtr field = shell ? sheetToField(prepared.mesh, options.thickness / voxelSize, ctx)
+                                     : soupToField(prepared.mesh, name, ctx);
+    stage.advance();
+    return rebuilt(field, voxelSize, halfWidth, name, ctx);
+}
+
+FloatGridPtr meshToLevelSet(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
+                            const RunContext& ctx) {
+    checkOptions(voxelSize, halfWidth);
+    const FloatGridPtr grid = openVdbLevelSet(mesh, voxelSize, halfWidth, name, ctx);
+    const std::string wrong = missingVolume(*grid, mesh, voxelSize);
+    if (!wrong.empty()) throw Error(ErrorCode::Unusable, name + ": " + wrong);
+    return grid;
 }
 
 }  // namespace vdbsynth

@@ -1,13 +1,17 @@
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/io/gzip.h"
+#include "libvdbsynth/io/text_scanner.h"
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "libvdbsynth/vdb/wall.h"
 
 #include <openvdb/io/File.h>
+#include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 
 #include <fstream>
 #include <memory>
+#include <sstream>
 
 #include <sys/stat.h>
 
@@ -47,7 +51,7 @@ void openWithStrangers(openvdb::io::File& file) {
         }
 }
 
-// Opens after the checks whose messages OpenVDB's own would not give.
+// Opens after the checks whose messages OpenVDB's own would not give. Null for a gzip file.
 std::unique_ptr<openvdb::io::File> openVdb(const std::string& path) {
     openvdb::initialize();
     struct stat status {};
@@ -59,10 +63,33 @@ std::unique_ptr<openvdb::io::File> openVdb(const std::string& path) {
     if (!probe) throw Error(ErrorCode::Io, path + ": cannot be read");
     probe.read(magic, sizeof magic);
     if (probe.gcount() == 0) throw Error(ErrorCode::BadData, path + ": the file is empty");
+    if (probe.gcount() > 2 && isGzip(std::string(magic, 3))) return nullptr;
     if (std::string(magic, 4) != " BDV") throw Error(ErrorCode::BadData, path + ": not a VDB file");
     auto file = std::make_unique<openvdb::io::File>(path);
     behindWall(ErrorCode::BadData, path + ": truncated or corrupt", [&] { openWithStrangers(*file); });
     return file;
+}
+
+VdbMetadata textOf(const openvdb::MetaMap& map) {
+    VdbMetadata metadata;
+    for (auto it = map.beginMeta(); it != map.endMeta(); ++it)
+        metadata.emplace_back(it->first, it->second->str());
+    return metadata;
+}
+
+VdbContents readPackedVdb(const std::string& path) {
+    const std::string content = readWholeFile(path);
+    if (content.compare(0, 4, " BDV") != 0)
+        throw Error(ErrorCode::BadData, path + ": what it holds is not a VDB file");
+    VdbContents contents;
+    behindWall(ErrorCode::BadData, path + ": truncated or corrupt", [&] {
+        std::istringstream bytes(content);
+        openvdb::io::Stream stream(bytes, /* delayLoad= */ false);
+        contents.metadata = textOf(*stream.getMetadata());
+        const openvdb::GridPtrVecPtr grids = stream.getGrids();
+        contents.grids.assign(grids->begin(), grids->end());
+    });
+    return contents;
 }
 
 }  // namespace
@@ -71,10 +98,13 @@ VdbContents readVdb(const std::string& path, const RunContext& ctx) {
     Stage stage(ctx, "reading " + path, 1, /* reading= */ true);
     const auto file = openVdb(path);
     VdbContents contents;
+    if (!file) {
+        contents = readPackedVdb(path);
+        stage.advance();
+        return contents;
+    }
     behindWall(ErrorCode::BadData, path + ": truncated or corrupt", [&] {
-        const openvdb::MetaMap::Ptr metadata = file->getMetadata();
-        for (auto it = metadata->beginMeta(); it != metadata->endMeta(); ++it)
-            contents.metadata.emplace_back(it->first, it->second->str());
+        contents.metadata = textOf(*file->getMetadata());
         for (auto name = file->beginName(); name != file->endName(); ++name) try {
                 contents.grids.push_back(file->readGrid(*name));
             } catch (const openvdb::KeyError&) {

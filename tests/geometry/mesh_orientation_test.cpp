@@ -76,3 +76,13 @@ TEST_CASE("orientFaces: half of the faces turned at random come back by their vo
     orientFaces(mixed);
     CHECK(volumeOf(mixed) == Approx(volumeOf(ball)));
 }
+
+TEST_CASE("removeDuplicateFaces: double-sided faces become single ones", "[geometry][property]") {
+    const Mesh ball = test::sphereMesh(1, 2);
+    Mesh twice = ball;
+    for (const Triangle& t : ball.triangles) twice.triangles.push_back({t[1], t[0], t[2]});
+    twice.triangles.push_back({3, 3, 4});
+    CHECK(removeDuplicateFaces(twice) == ball.triangles.size());
+    CHECK(twice.triangles == ball.triangles);
+    CHECK(removeDuplicateFaces(twice) == 0);
+}

@@ -198,3 +198,53 @@ TEST_CASE("writeMesh: a folder that does not exist is an Io error", "[io][error]
     CHECK(test::thrownBy([] { writeMesh("/nowhere/a.obj", MeshFormat::Obj, test::sphereMesh(1, 0)); }).code ==
           int(ErrorCode::Io));
 }
+
+TEST_CASE("readMesh: PLY triangle strips, -1 begins a new one", "[io][oracle]") {
+    const test::TemporaryFolder folder;
+    const std::string head =
+        "ply\nformat ascii 1.0\nelement vertex 5\nproperty double x\nproperty double y\nproperty double z\n"
+        "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+        "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n";
+    const Mesh mesh = readMesh(folder.write("s.ply", head + "9 0 1 2 3 -1 2 3 4 4\n"));
+    REQUIRE(mesh.triangles.size() == 3);
+    CHECK(mesh.triangles[0] == Triangle{0, 1, 2});
+    CHECK(mesh.triangles[1] == Triangle{2, 1, 3});
+    CHECK(mesh.triangles[2] == Triangle{2, 3, 4});
+    const test::Thrown outside = test::thrownBy([&] { readMesh(folder.write("b.ply", head + "3 0 1 7\n")); });
+    CHECK(outside.code == int(ErrorCode::BadData));
+    CHECK(test::contains(outside.message, "vertex 7 of 5"));
+}
+
+TEST_CASE("readMesh: a PLY index that is no whole number is refused", "[io][error]") {
+    const test::TemporaryFolder folder;
+    const std::string head =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar float vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
+    CHECK(readMesh(folder.write("a.ply", head + "3 0 1 2\n")).triangles.size() == 1);
+    CHECK(
+        test::contains(test::thrownBy([&] { readMesh(folder.write("b.ply", head + "3 0 1.5 2\n")); }).message,
+                       "vertex 1.5 of 3"));
+}
+
+TEST_CASE("readMesh: MEDIT surfaces, and the outside of tetrahedra", "[io][oracle]") {
+    const test::TemporaryFolder folder;
+    const std::string vertices =
+        "MeshVersionFormatted 1\nDimension 3\nVertices\n5\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 1 1 0\n";
+    const Mesh solid =
+        readMesh(folder.write("t.mesh", vertices + "Tetrahedra\n2\n1 2 3 4 0\n2 3 4 5 0\nEnd\n"));
+    CHECK(solid.triangles.size() == 6);
+    const MeshSummary summary = summarize(solid);
+    CHECK(summary.openEdges == 0);
+    // 1/6 for the corner, 1/3 for the other.
+    CHECK(std::abs(summary.signedVolume) <= 0.5 + 1e-9);
+    const Mesh surface =
+        readMesh(folder.write("s.mesh", vertices + "Edges\n1\n1 2 0\nTriangles\n1\n1 2 3 7\nEnd\n"));
+    CHECK(surface.triangles.size() == 1);
+    CHECK(test::contains(test::thrownBy([&] {
+                             readMesh(folder.write("b.mesh", vertices + "Triangles\n1\n1 2 9 0\n"));
+                         }).message,
+                         "vertex 9 of 5"));
+    CHECK(test::thrownBy([&] {
+              readMesh(folder.write("c.mesh", "MeshVersionFormatted 2\nVertices\n99999999\n"));
+          }).code == int(ErrorCode::BadData));
+}

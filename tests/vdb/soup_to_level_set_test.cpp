@@ -79,6 +79,15 @@ TEST_CASE("meshToSolid: shuffled vertices, turned faces and overlapping parts ma
     CHECK(volumeOf(*meshToSolid(both, 0.5, 3, "both")) == Approx(volume).epsilon(0.03));
 }
 
+TEST_CASE("meshToSolid: a ball whose faces are all given from both sides is a ball", "[vdb][property]") {
+    openvdb::initialize();
+    const Mesh ball = test::sphereMesh(10, 4);
+    Mesh twice = ball;
+    for (const Triangle& t : ball.triangles) twice.triangles.push_back({t[1], t[0], t[2]});
+    CHECK(volumeOf(*meshToSolid(twice, 0.5, 3, "twice")) ==
+          Approx(volumeOf(*meshToSolid(ball, 0.5, 3, "ball"))).epsilon(0.01));
+}
+
 TEST_CASE("meshToSolid: same bits for any number of threads", "[vdb][determinism]") {
     openvdb::initialize();
     RunContext one, two;

@@ -5,6 +5,8 @@ list(APPEND CMAKE_MODULE_PATH "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/Open
 set(CMAKE_MESSAGE_LOG_LEVEL NOTICE)
 find_package(OpenVDB 10 REQUIRED COMPONENTS openvdb)
 unset(CMAKE_MESSAGE_LOG_LEVEL)
+find_package(Eigen3 REQUIRED NO_MODULE)
+find_package(nanoflann REQUIRED)
 find_package(PNG REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(tinyobjloader REQUIRED)

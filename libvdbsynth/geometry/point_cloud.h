@@ -1,6 +1,8 @@
 #pragma once
+#include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/math/vec3.h"
 
+#include <cstddef>
 #include <vector>
 
 namespace vdbsynth {
@@ -10,5 +12,20 @@ struct PointCloud {
     std::vector<Vec3f> points;   ///< [points] world space
     std::vector<Vec3f> normals;  ///< [points], or empty
 };
+
+/// Distance [world] from every point to its neighbours: the root mean square over the 6 nearest, over root 2,
+/// which on an even surface is about the distance of two points.
+/// @par Cost    O(points log points)   @par Repeats same bits for any number of threads
+std::vector<float> pointSpacing(const PointCloud& cloud, const RunContext& ctx = {});
+
+/// Leaves out points at one place but the first, and outliers: those whose spacing is over eight times the
+/// median. @return number of outliers left out
+std::size_t dropOutliers(PointCloud& cloud, const RunContext& ctx = {});
+
+/// Gives every point a normal: that of the plane through its 16 nearest neighbours, turned to agree with its
+/// neighbours along a minimum spanning tree of the neighbour graph, flattest pairs first, from the highest
+/// point of each part, which looks up [hoppe1992, section 3.3].
+/// @par Cost    O(points log points)   @par Repeats same bits for any number of threads
+void estimateNormals(PointCloud& cloud, const RunContext& ctx = {});
 
 }  // namespace vdbsynth

@@ -21,6 +21,13 @@ double solidAngle(const Vec3d& p, const Vec3f& a, const Vec3f& b, const Vec3f& c
     return std::atan2(above, below) / (2 * kPi);
 }
 
+// Solid angle of a small area at a place, over 4 pi.
+double dipole(const Vec3d& p, const Vec3f& place, const Vec3f& area) {
+    const Vec3d towards = cast<double>(place) - p;
+    const double squared = dot(towards, towards);
+    return squared > 0 ? dot(towards, cast<double>(area)) / (4 * kPi * squared * std::sqrt(squared)) : 0;
+}
+
 }  // namespace
 
 WindingNumber::WindingNumber(const Mesh& mesh, const RunContext& ctx) {
@@ -31,18 +38,32 @@ WindingNumber::WindingNumber(const Mesh& mesh, const RunContext& ctx) {
     if (!mFaces.empty()) build(0, std::uint32_t(mFaces.size()));
 }
 
+WindingNumber::WindingNumber(const std::vector<Vec3f>& points, const std::vector<Vec3f>& normals,
+                             const std::vector<float>& areas, const RunContext& ctx)
+    : mPoints(true) {
+    for (std::size_t i = 0; i < points.size(); ++i)
+        mFaces.push_back({points[i], normals[i] * areas[i], points[i]});
+    mNodes.reserve(mFaces.size() / 2 + 1);
+    throwIfCancelled(ctx);
+    if (!mFaces.empty()) build(0, std::uint32_t(mFaces.size()));
+}
+
+WindingNumber::Moments WindingNumber::momentsOf(const Face& face) const {
+    const Vec3d a = cast<double>(face.a), b = cast<double>(face.b), c = cast<double>(face.c);
+    if (mPoints) return {a, b};
+    return {(a + b + c) * (1.0 / 3), cross(b - a, c - a) * 0.5};
+}
+
 std::uint32_t WindingNumber::build(std::uint32_t first, std::uint32_t count) {
     const std::uint32_t index = std::uint32_t(mNodes.size());
     mNodes.emplace_back();
-    Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300}, weighted, dipole;
+    Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300}, weighted, total;
     double area = 0;
     for (std::uint32_t i = first; i < first + count; ++i) {
-        const Face& f = mFaces[i];
-        const Vec3d a = cast<double>(f.a), b = cast<double>(f.b), c = cast<double>(f.c);
-        const Vec3d normal = cross(b - a, c - a) * 0.5, middle = (a + b + c) * (1.0 / 3);
+        const auto [middle, normal] = momentsOf(mFaces[i]);
         weighted = weighted + middle * length(normal);
         area += length(normal);
-        dipole = dipole + normal;
+        total = total + normal;
         for (int axis = 0; axis < 3; ++axis) {
             low[axis] = std::min(low[axis], middle[axis]);
             high[axis] = std::max(high[axis], middle[axis]);
@@ -51,7 +72,7 @@ std::uint32_t WindingNumber::build(std::uint32_t first, std::uint32_t count) {
     const Vec3d centre = area > 0 ? weighted * (1 / area) : (low + high) * 0.5;
     double radius = 0;
     for (std::uint32_t i = first; i < first + count; ++i)
-        for (const Vec3f& corner : {mFaces[i].a, mFaces[i].b, mFaces[i].c})
+        for (const Vec3f& corner : {mFaces[i].a, mPoints ? mFaces[i].a : mFaces[i].b, mFaces[i].c})
             radius = std::max(radius, length(cast<double>(corner) - centre));
     std::uint32_t right = 0;
     if (count > kLeafFaces) {
@@ -60,13 +81,14 @@ std::uint32_t WindingNumber::build(std::uint32_t first, std::uint32_t count) {
             if (high[other] - low[other] > high[axis] - low[axis]) axis = other;
         const auto middle = mFaces.begin() + first + count / 2;
         std::nth_element(mFaces.begin() + first, middle, mFaces.begin() + first + count,
-                         [axis](const Face& x, const Face& y) {
+                         [this, axis](const Face& x, const Face& y) {
+                             if (mPoints) return x.a[axis] < y.a[axis];
                              return x.a[axis] + x.b[axis] + x.c[axis] < y.a[axis] + y.b[axis] + y.c[axis];
                          });
         build(first, count / 2);
         right = build(first + count / 2, count - count / 2);
     }
-    mNodes[index] = {cast<float>(centre), float(radius), cast<float>(dipole), first, count, right};
+    mNodes[index] = {cast<float>(centre), float(radius), cast<float>(total), first, count, right};
     return index;
 }
 
@@ -81,10 +103,11 @@ double WindingNumber::at(const Vec3d& point) const {
         const Vec3d towards = cast<double>(node.centre) - point;
         const double squared = dot(towards, towards), reach = double(kFar) * double(node.radius);
         if (squared > reach * reach) {
-            sum += dot(towards, cast<double>(node.dipole)) / (4 * kPi * squared * std::sqrt(squared));
+            sum += dipole(point, node.centre, node.dipole);
         } else if (node.right == 0) {
             for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-                sum += solidAngle(point, mFaces[i].a, mFaces[i].b, mFaces[i].c);
+                sum += mPoints ? dipole(point, mFaces[i].a, mFaces[i].b)
+                               : solidAngle(point, mFaces[i].a, mFaces[i].b, mFaces[i].c);
         } else {
             stack[depth++] = node.right;
             stack[depth++] = index + 1;

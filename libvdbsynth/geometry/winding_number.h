@@ -19,6 +19,12 @@ public:
     /// @par Repeats yes
     explicit WindingNumber(const Mesh& mesh, const RunContext& ctx = {});
 
+    /// Of oriented points that each stand for an area [barill2018, Eq. 5]: about 1 inside and 0 outside of
+    /// the surface they were taken from, some spacings away from it.
+    /// @param normals  unit, outward; as many as points, as are areas [world^2]
+    WindingNumber(const std::vector<Vec3f>& points, const std::vector<Vec3f>& normals,
+                  const std::vector<float>& areas, const RunContext& ctx = {});
+
     /// @par Cost    O(log faces); may be called from many threads
     double at(const Vec3d& point) const;
 
@@ -31,12 +37,18 @@ private:
         std::uint32_t count = 0;
         std::uint32_t right = 0;  // second child; the first one follows the node; 0: a leaf
     };
+    // Corners of a face, or place and dipole of a point.
     struct Face {
         Vec3f a, b, c;
     };
+    struct Moments {
+        Vec3d middle, dipole;
+    };
+    Moments momentsOf(const Face& face) const;
 
     std::uint32_t build(std::uint32_t first, std::uint32_t count);
 
+    bool mPoints = false;
     std::vector<Face> mFaces;
     std::vector<Node> mNodes;
 };

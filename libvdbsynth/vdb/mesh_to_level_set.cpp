@@ -1,4 +1,3 @@
-#include "libvdbsynth/vdb/interrupter.h"
 #include "libvdbsynth/vdb/mesh_conversion.h"
 #include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/wall.h"

@@ -3,10 +3,10 @@
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/geometry/winding_number.h"
 #include "libvdbsynth/vdb/coord.h"
-#include "libvdbsynth/vdb/interrupter.h"
 #include "libvdbsynth/vdb/mesh_conversion.h"
 #include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/wall.h"
+#include "libvdbsynth/vdb/winding_field.h"
 
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
@@ -23,8 +23,6 @@ namespace {
 using Leaf = openvdb::FloatTree::LeafNodeType;
 constexpr int kSide = 8;
 constexpr int kVoxels = kSide * kSide * kSide;
-constexpr double kMargin = 0.2;     // a winding number this far from 1/2 is not near an opening
-constexpr float kOpeningScale = 8;  // [voxels] that a change of the winding number by 1 counts as
 
 // Distances to the faces, of voxels within `reach`.
 openvdb::FloatGrid::Ptr unsignedDistance(const Mesh& indexMesh, float reach, const RunContext& ctx) {
@@ -49,63 +47,18 @@ public:
 
     // A field that is negative inside, its values distances near the faces; voxels where the index space of
     // the mesh has them.
-    openvdb::FloatGrid::Ptr run() {
+    FloatGridPtr run() {
         mDistance = unsignedDistance(mMesh, kHalfWidth + 1, mContext);
         openvdb::CoordBBox box = mDistance->evalActiveVoxelBoundingBox();
         box.expand(2);
-        mField = openvdb::FloatGrid::create(kHalfWidth);
-        collect(box);
-        fill();
-        return mField;
+        WindingFieldSource source;
+        source.hasSurface = [this](const Index3& corner, int side) { return hasFaces(corner, side); };
+        source.winding = [this](const Index3& p) { return windingAt(p); };
+        source.fill = [this](const Index3& corner, float* values) { fillLeaf(corner, values); };
+        return buildWindingField(fromBBox(box), source, mContext);
     }
 
 private:
-    // Splits space into leaf-sized regions that need a look at their voxels and larger ones on one side.
-    void collect(const openvdb::CoordBBox& box) {
-        constexpr int kNode = 64;
-        const auto floor = [](int v) { return v >= 0 ? v / kNode : -((-v + kNode - 1) / kNode); };
-        std::vector<Index3> nodes;
-        for (int x = floor(box.min().x()); x <= floor(box.max().x()); ++x)
-            for (int y = floor(box.min().y()); y <= floor(box.max().y()); ++y)
-                for (int z = floor(box.min().z()); z <= floor(box.max().z()); ++z)
-                    nodes.push_back(Index3{x, y, z} * kNode);
-        std::vector<Regions> found(nodes.size());
-        parallelFor(mContext, nodes.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) split(nodes[i], kNode, found[i]);
-        });
-        for (const Regions& regions : found) {
-            mLeaves.insert(mLeaves.end(), regions.leaves.begin(), regions.leaves.end());
-            for (const IndexBox& inside : regions.inside)
-                mField->sparseFill(toBBox(inside), -kHalfWidth, /* active= */ false);
-        }
-    }
-
-    struct Regions {
-        std::vector<Index3> leaves;
-        std::vector<IndexBox> inside;
-    };
-
-    void split(const Index3& corner, int side, Regions& regions) const {
-        const bool faces = hasFaces(corner, side);
-        if (!faces) {
-            double low = 0, high = 0;
-            cornerRange(corner, side, low, high);
-            if (high < 0.5 - kMargin / 2) return;
-            if (low > 0.5 + kMargin / 2) {
-                regions.inside.push_back(IndexBox::cube(corner, side));
-                return;
-            }
-        }
-        if (side == kSide) {
-            regions.leaves.push_back(corner);
-            return;
-        }
-        const int half = side / 2;
-        for (int c = 0; c < 8; ++c)
-            split(corner + Index3{c & 4 ? half : 0, c & 2 ? half : 0, c & 1 ? half : 0}, half, regions);
-    }
-
-    // True if any voxel of the region lies in the faces' band.
     bool hasFaces(const Index3& corner, int side) const {
         const auto accessor = mDistance->getConstAccessor();
         for (int x = 0; x < side; x += kSide)
@@ -117,42 +70,20 @@ private:
 
     double windingAt(const Index3& p) const { return mWinding.at({double(p.x), double(p.y), double(p.z)}); }
 
-    // Away from faces the winding number is harmonic: its extremes over a region are on its border, and its
-    // corners and middle tell whether it comes near one half.
-    void cornerRange(const Index3& corner, int side, double& low, double& high) const {
-        const int far = side - 1;
-        low = high = windingAt(corner + Index3{side / 2, side / 2, side / 2});
-        for (int c = 0; c < 8; ++c) {
-            const double w = windingAt(corner + Index3{c & 4 ? far : 0, c & 2 ? far : 0, c & 1 ? far : 0});
-            low = std::min(low, w);
-            high = std::max(high, w);
-        }
-    }
-
-    void fill() {
-        std::vector<std::unique_ptr<Leaf>> made(mLeaves.size());
-        parallelFor(mContext, mLeaves.size(), 4, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) made[i] = fillLeaf(mLeaves[i]);
-        });
-        for (std::unique_ptr<Leaf>& leaf : made) mField->tree().addLeaf(leaf.release());
-    }
-
-    std::unique_ptr<Leaf> fillLeaf(const Index3& corner) const {
+    void fillLeaf(const Index3& corner, float* values) const {
         std::array<float, kVoxels> distance;
         const auto accessor = mDistance->getConstAccessor();
         const Leaf* band = accessor.probeConstLeaf(toCoord(corner));
         for (int i = 0; i < kVoxels; ++i)
             distance[std::size_t(i)] =
                 band ? std::min(band->getValue(openvdb::Index(i)), kHalfWidth) : kHalfWidth;
-        auto leaf = std::make_unique<Leaf>(toCoord(corner), kHalfWidth, true);
         std::array<char, kVoxels> seen{};
         std::vector<int> part;
         for (int seed = 0; seed < kVoxels; ++seed) {
             if (seen[std::size_t(seed)]) continue;
             growPart(seed, distance, seen, part);
-            signPart(corner, part, distance, *leaf);
+            signPart(corner, part, distance, values);
         }
-        return leaf;
     }
 
     // Voxels joined by steps that cannot cross a face: one as long as their two distances together or longer
@@ -178,7 +109,7 @@ private:
 
     // All on the side of their most distant voxel, unless that is near an opening: then each by itself.
     void signPart(const Index3& corner, const std::vector<int>& part,
-                  const std::array<float, kVoxels>& distance, Leaf& leaf) const {
+                  const std::array<float, kVoxels>& distance, float* values) const {
         const auto place = [&](int i) { return corner + Index3{i >> 6, (i >> 3) & 7, i & 7}; };
         const int middle = *std::max_element(part.begin(), part.end(), [&](int a, int b) {
             return distance[std::size_t(a)] < distance[std::size_t(b)];
@@ -191,20 +122,19 @@ private:
             low = std::min(low, w);
             high = std::max(high, w);
         }
-        const bool clear = low > 0.5 + kMargin || high < 0.5 - kMargin;
+        const bool clear = low > 0.5 + kWindingMargin || high < 0.5 - kWindingMargin;
         for (int i : part) {
             const double w = clear ? first : i == middle ? first : windingAt(place(i));
             float value = distance[std::size_t(i)];
-            if (!clear) value = std::min(value, std::max(1e-3f, kOpeningScale * float(std::abs(w - 0.5))));
-            leaf.setValueOnly(openvdb::Index(i), w > 0.5 ? -value : value);
+            if (!clear) value = std::min(value, openingDistance(w));
+            values[i] = w > 0.5 ? -value : value;
         }
     }
 
     const Mesh& mMesh;
     const RunContext& mContext;
     const WindingNumber& mWinding;
-    openvdb::FloatGrid::Ptr mDistance, mField;
-    std::vector<Index3> mLeaves;
+    openvdb::FloatGrid::Ptr mDistance;
 };
 
 }  // namespace
@@ -219,8 +149,7 @@ FloatGridPtr soupToField(const Mesh& indexMesh, const std::string& name, const R
                         " open edges: " + std::to_string(int(100 * (1 - share))) +
                         " % of its area bounds nothing; close the mesh or make a shell with --open shell "
                         "--thickness W");
-    return behindWall(ErrorCode::Unusable, name,
-                      [&] { return FloatGridPtr(Soup(indexMesh, winding, ctx).run()); });
+    return behindWall(ErrorCode::Unusable, name, [&] { return Soup(indexMesh, winding, ctx).run(); });
 }
 
 FloatGridPtr sheetToField(const Mesh& indexMesh, double thickness, const RunContext& ctx) {

@@ -1,7 +1,9 @@
 #pragma once
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/run_context.h"
 
 #include <openvdb/Exceptions.h>
+#include <openvdb/util/NullInterrupter.h>
 
 #include <new>
 #include <string>
@@ -25,5 +27,18 @@ auto behindWall(ErrorCode code, const std::string& what, Work&& work) -> decltyp
         throw Error(code, what + ": " + text);
     }
 }
+
+/// Lets OpenVDB's tools stop when the context is cancelled. Pass it as util::NullInterrupter&: a tool
+/// instantiated for this type itself takes 37 s to compile instead of 8 s.
+class Interrupter final : public openvdb::util::NullInterrupter {
+public:
+    explicit Interrupter(const RunContext& ctx) : mContext(ctx) {}
+    bool wasInterrupted(int = -1) override {
+        return mContext.cancel && mContext.cancel->load(std::memory_order_relaxed);
+    }
+
+private:
+    const RunContext& mContext;
+};
 
 }  // namespace vdbsynth

@@ -17,7 +17,7 @@ for room, direct in [
 # Which rooms may see which third party.
 ALLOWED = {
     "openvdb/": {"vdb", "pipeline"}, "tbb/": {"base"}, "xxhash.h": {"base"}, "png.h": {"io"},
-    "tiny_obj_loader.h": {"io"}, "zlib.h": {"io"}, "nanoflann.hpp": {"geometry"}, "boost/": {"tools"}, "nlohmann/": {"tools"},
+    "tiny_obj_loader.h": {"io"}, "zlib.h": {"io"}, "nanoflann.hpp": {"geometry"}, "Eigen/": {"math", "geometry"}, "boost/": {"tools"}, "nlohmann/": {"tools"},
 }
 ONE_FILE = {"png.h", "zlib.h", "nanoflann.hpp", "tiny_obj_loader.h", "xxhash.h", "boost/"}
 

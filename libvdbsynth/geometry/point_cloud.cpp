@@ -1,0 +1,177 @@
+#include "libvdbsynth/geometry/point_cloud.h"
+
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/geometry/point_neighbours.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <queue>
+#include <tuple>
+
+namespace vdbsynth {
+namespace {
+
+constexpr std::size_t kPlane = 16;  // neighbours that make a plane
+
+// Keeps the points where `keep` is set.
+void keepOnly(PointCloud& cloud, const std::vector<char>& keep) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < keep.size(); ++i) {
+        if (!keep[i]) continue;
+        cloud.points[kept] = cloud.points[i];
+        if (!cloud.normals.empty()) cloud.normals[kept] = cloud.normals[i];
+        ++kept;
+    }
+    cloud.points.resize(kept);
+    if (!cloud.normals.empty()) cloud.normals.resize(kept);
+}
+
+void dropRepeats(PointCloud& cloud) {
+    std::vector<std::uint32_t> order(cloud.points.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto key = [&](std::uint32_t i) {
+        const Vec3f& p = cloud.points[i];
+        return std::make_tuple(p.x, p.y, p.z);
+    };
+    std::sort(order.begin(), order.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
+    std::vector<char> keep(cloud.points.size(), 1);
+    for (std::size_t i = 1; i < order.size(); ++i) keep[order[i]] = key(order[i]) != key(order[i - 1]);
+    keepOnly(cloud, keep);
+}
+
+// Of each point its kPlane nearest, itself included; short rows end with the point itself.
+std::vector<std::uint32_t> neighbourTable(const PointCloud& cloud, const RunContext& ctx) {
+    const PointNeighbours tree(cloud.points);
+    std::vector<std::uint32_t> table(cloud.points.size() * kPlane);
+    parallelFor(ctx, cloud.points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        float squared[kPlane];
+        for (std::size_t i = begin; i < end; ++i) {
+            std::uint32_t* row = &table[i * kPlane];
+            std::fill(row, row + kPlane, std::uint32_t(i));
+            tree.nearest(cloud.points[i], kPlane, row, squared);
+        }
+    });
+    return table;
+}
+
+// The direction in which the points of a row vary least.
+Vec3f planeNormal(const PointCloud& cloud, const std::uint32_t* row) {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    const auto place = [&](std::size_t k) {
+        const Vec3f& p = cloud.points[row[k]];
+        return Eigen::Vector3d(double(p.x), double(p.y), double(p.z));
+    };
+    for (std::size_t k = 0; k < kPlane; ++k) mean += place(k) / double(kPlane);
+    for (std::size_t k = 0; k < kPlane; ++k) spread += (place(k) - mean) * (place(k) - mean).transpose();
+    const Eigen::Vector3d normal =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>().computeDirect(spread).eigenvectors().col(0);
+    const Vec3f result{float(normal.x()), float(normal.y()), float(normal.z())};
+    return std::isfinite(result.x + result.y + result.z) && length(result) > 0.5f ? normalized(result)
+                                                                                  : Vec3f{0, 0, 1};
+}
+
+// The neighbour graph in both directions, as one array with the beginning of each point's part.
+struct Graph {
+    std::vector<std::size_t> begin;
+    std::vector<std::uint32_t> other;
+};
+
+Graph graphOf(const std::vector<std::uint32_t>& table, std::size_t points) {
+    Graph graph;
+    graph.begin.assign(points + 1, 0);
+    const auto forPairs = [&](auto&& visit) {
+        for (std::size_t i = 0; i < points; ++i)
+            for (std::size_t k = 0; k < kPlane; ++k) {
+                const std::uint32_t j = table[i * kPlane + k];
+                if (j == i) continue;
+                visit(std::uint32_t(i), j);
+                visit(j, std::uint32_t(i));
+            }
+    };
+    forPairs([&](std::uint32_t i, std::uint32_t) { ++graph.begin[i + 1]; });
+    std::partial_sum(graph.begin.begin(), graph.begin.end(), graph.begin.begin());
+    graph.other.resize(graph.begin.back());
+    std::vector<std::size_t> next(graph.begin.begin(), graph.begin.end() - 1);
+    forPairs([&](std::uint32_t i, std::uint32_t j) { graph.other[next[i]++] = j; });
+    return graph;
+}
+
+void orientNormals(PointCloud& cloud, const Graph& graph, const RunContext& ctx) {
+    using Step = std::tuple<float, std::uint32_t, std::uint32_t>;  // bend, point, from
+    std::vector<std::uint32_t> order(cloud.points.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return cloud.points[a].z != cloud.points[b].z ? cloud.points[a].z > cloud.points[b].z : a < b;
+    });
+    std::vector<char> done(cloud.points.size(), 0);
+    for (std::uint32_t seed : order) {
+        if (done[seed]) continue;
+        throwIfCancelled(ctx);
+        if (cloud.normals[seed].z < 0) cloud.normals[seed] = -cloud.normals[seed];
+        std::priority_queue<Step, std::vector<Step>, std::greater<Step>> queue;
+        queue.emplace(0.f, seed, seed);
+        while (!queue.empty()) {
+            const auto [bend, point, from] = queue.top();
+            queue.pop();
+            if (done[point]) continue;
+            done[point] = 1;
+            if (dot(cloud.normals[point], cloud.normals[from]) < 0)
+                cloud.normals[point] = -cloud.normals[point];
+            for (std::size_t e = graph.begin[point]; e < graph.begin[point + 1]; ++e) {
+                const std::uint32_t other = graph.other[e];
+                if (!done[other])
+                    queue.emplace(1 - std::abs(dot(cloud.normals[point], cloud.normals[other])), other,
+                                  point);
+            }
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<float> pointSpacing(const PointCloud& cloud, const RunContext& ctx) {
+    constexpr std::size_t kNearest = 7;  // itself and six
+    const PointNeighbours tree(cloud.points);
+    std::vector<float> spacing(cloud.points.size(), 0);
+    parallelFor(ctx, cloud.points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        std::uint32_t numbers[kNearest];
+        float squared[kNearest];
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::size_t found = tree.nearest(cloud.points[i], kNearest, numbers, squared);
+            float sum = 0;
+            for (std::size_t k = 0; k < found; ++k) sum += squared[k];
+            spacing[i] = found > 1 ? std::sqrt(sum / float(found - 1) / 2) : 0;
+        }
+    });
+    return spacing;
+}
+
+std::size_t dropOutliers(PointCloud& cloud, const RunContext& ctx) {
+    dropRepeats(cloud);
+    if (cloud.points.size() < 8) return 0;
+    const std::vector<float> spacing = pointSpacing(cloud, ctx);
+    std::vector<float> sorted = spacing;
+    const auto median = sorted.begin() + std::ptrdiff_t(sorted.size() / 2);
+    std::nth_element(sorted.begin(), median, sorted.end());
+    std::vector<char> keep(spacing.size());
+    for (std::size_t i = 0; i < spacing.size(); ++i) keep[i] = spacing[i] <= 8 * *median;
+    const std::size_t before = cloud.points.size();
+    keepOnly(cloud, keep);
+    return before - cloud.points.size();
+}
+
+void estimateNormals(PointCloud& cloud, const RunContext& ctx) {
+    const std::vector<std::uint32_t> table = neighbourTable(cloud, ctx);
+    cloud.normals.assign(cloud.points.size(), Vec3f{});
+    parallelFor(ctx, cloud.points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) cloud.normals[i] = planeNormal(cloud, &table[i * kPlane]);
+    });
+    orientNormals(cloud, graphOf(table, cloud.points.size()), ctx);
+}
+
+}  // namespace vdbsynth

@@ -1,0 +1,31 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/math/index_box.h"
+#include "libvdbsynth/vdb/vdb_fwd.h"
+
+#include <functional>
+
+namespace vdbsynth {
+
+/// What a sparse field is made from: samples near a surface, elsewhere the sign of a winding number.
+/// All places are voxels; every function may be called from many threads.
+struct WindingFieldSource {
+    /// True if a cube of `side` voxels has any surface in it.
+    std::function<bool(const Index3& corner, int side)> hasSurface;
+    std::function<double(const Index3& voxel)> winding;
+    /// The values of a cube of 8 voxels, x slowest, negative inside.
+    std::function<void(const Index3& corner, float* values)> fill;
+};
+
+/// A winding number this far from 1/2 is not near an opening.
+inline constexpr double kWindingMargin = 0.2;
+
+/// What a winding number's distance from 1/2 counts as where openings are closed [voxels].
+float openingDistance(double winding);
+
+/// A field over a box: cubes with surface, and those where the winding number comes near 1/2, are filled, the
+/// others are tiles of the half-width of its sign.
+/// @par Repeats same bits for any number of threads
+FloatGridPtr buildWindingField(const IndexBox& box, const WindingFieldSource& source, const RunContext& ctx);
+
+}  // namespace vdbsynth

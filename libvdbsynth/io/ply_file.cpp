@@ -2,6 +2,7 @@
 // indices; every other element and property is passed over by its declared size.
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/mesh_readers.h"
+#include "libvdbsynth/io/point_readers.h"
 #include "libvdbsynth/io/text_scanner.h"
 
 #include <algorithm>
@@ -213,29 +214,35 @@ void checkCounts(const std::string& path, const std::string& content, const Head
     }
 }
 
-void readVertices(Body& body, const Element& element, Mesh& mesh) {
-    int axisOf[3] = {-1, -1, -1};
+// Reads vertices; `normals` is null where nobody wants them, and stays empty where there are none.
+void readVertices(Body& body, const Element& element, std::vector<Vec3f>& points,
+                  std::vector<Vec3f>* normals) {
+    static const char* const names[6] = {"x", "y", "z", "nx", "ny", "nz"};
+    std::vector<int> slot(element.properties.size(), -1);  // which of the six a property is
+    bool found[6] = {};
     for (std::size_t i = 0; i < element.properties.size(); ++i)
-        for (int axis = 0; axis < 3; ++axis)
-            if (element.properties[i].name == std::string(1, char('x' + axis)) && !element.properties[i].list)
-                axisOf[axis] = int(i);
+        for (int k = 0; k < 6; ++k)
+            if (element.properties[i].name == names[k] && !element.properties[i].list) {
+                slot[i] = k;
+                found[k] = true;
+            }
     for (int axis = 0; axis < 3; ++axis)
-        if (axisOf[axis] < 0) body.fail(std::string("the vertices have no ") + char('x' + axis));
-    mesh.points.reserve(std::size_t(element.count));
+        if (!found[axis]) body.fail(std::string("the vertices have no ") + names[axis]);
+    const bool wanted = normals && found[3] && found[4] && found[5];
+    points.reserve(std::size_t(element.count));
     for (std::int64_t v = 0; v < element.count; ++v) {
-        Vec3f p;
+        float row[6] = {};
         for (std::size_t i = 0; i < element.properties.size(); ++i) {
-            int axis = 0;
-            while (axis < 3 && axisOf[axis] != int(i)) ++axis;
-            if (axis == 3) {
+            if (slot[i] < 0 || (slot[i] >= 3 && !wanted)) {
                 body.skip(element.properties[i]);
                 continue;
             }
-            p[axis] = float(body.number(element.properties[i].value));
-            if (!std::isfinite(p[axis]))
+            row[slot[i]] = float(body.number(element.properties[i].value));
+            if (!normals && !std::isfinite(row[slot[i]]))
                 body.fail("vertex " + std::to_string(v) + " has a coordinate that is not a finite number");
         }
-        mesh.points.push_back(p);
+        points.push_back({row[0], row[1], row[2]});
+        if (wanted) normals->push_back({row[3], row[4], row[5]});
     }
 }
 
@@ -307,7 +314,7 @@ Mesh readPly(const std::string& path, const std::string& content) {
     Mesh mesh;
     for (const Element& element : header.elements) {
         if (element.name == "vertex")
-            readVertices(body, element, mesh);
+            readVertices(body, element, mesh.points, nullptr);
         else if (element.name == "face")
             readFaces(body, element, mesh.points.size(), mesh);
         else if (element.name == "tristrips")
@@ -317,6 +324,29 @@ Mesh readPly(const std::string& path, const std::string& content) {
                 for (const Property& property : element.properties) body.skip(property);
     }
     return mesh;
+}
+
+PointCloud readPlyPoints(const std::string& path, const std::string& content) {
+    const Header header = readHeader(path, content);
+    checkCounts(path, content, header);
+    Body body(path, content, header);
+    PointCloud cloud;
+    for (const Element& element : header.elements) {
+        if (element.name == "vertex") {
+            readVertices(body, element, cloud.points, &cloud.normals);
+            break;
+        }
+        for (std::int64_t i = 0; i < element.count; ++i)
+            for (const Property& property : element.properties) body.skip(property);
+    }
+    return cloud;
+}
+
+std::int64_t plyFaceCount(const std::string& path, const std::string& content) {
+    std::int64_t faces = 0;
+    for (const Element& element : readHeader(path, content).elements)
+        if (element.name == "face" || element.name == "tristrips") faces += element.count > 0 ? 1 : 0;
+    return faces;
 }
 
 }  // namespace vdbsynth

@@ -4,6 +4,7 @@
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/path.h"
+#include "libvdbsynth/io/point_file.h"
 #include "libvdbsynth/vdb/mesh_conversion.h"
 #include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/vdb_file.h"
@@ -15,39 +16,68 @@
 namespace vdbsynth {
 namespace {
 
-double longestSide(const std::string& path, const Mesh& mesh) {
+double longestSide(const std::string& path, const std::vector<Vec3f>& points) {
     Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-    const auto add = [&](std::uint32_t i) {
+    for (const Vec3f& p : points)
         for (int axis = 0; axis < 3; ++axis) {
-            low[axis] = std::min(low[axis], double(mesh.points[i][axis]));
-            high[axis] = std::max(high[axis], double(mesh.points[i][axis]));
+            low[axis] = std::min(low[axis], double(p[axis]));
+            high[axis] = std::max(high[axis], double(p[axis]));
         }
-    };
-    for (const Triangle& t : mesh.triangles)
-        for (std::uint32_t i : t) add(i);
-    for (const Quad& q : mesh.quads)
-        for (std::uint32_t i : q) add(i);
     const double side = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
-    if (!(side > 0)) throw Error(ErrorCode::Unusable, path + ": all faces lie in one point");
+    if (!(side > 0)) throw Error(ErrorCode::Unusable, path + ": all of it lies in one point");
     return side;
+}
+
+// The voxel size asked for, or that of the resolution along the longest side of some points.
+double chooseVoxelSize(const std::string& path, const std::vector<Vec3f>& points, const ModelOptions& options,
+                       const RunContext& ctx) {
+    if (options.voxelSize > 0) return options.voxelSize;
+    const int resolution = options.resolution > 0 ? options.resolution : kDefaultResolution;
+    const double voxelSize = longestSide(path, points) / resolution;
+    char text[128];
+    std::snprintf(text, sizeof text, ": voxel size %.6g (%d voxels along the longest side%s)", voxelSize,
+                  resolution, options.resolution > 0 ? "" : "; --resolution or --voxel-size sets it");
+    message(ctx, options.resolution > 0 ? MessageLevel::Detail : MessageLevel::Note, path + text);
+    return voxelSize;
+}
+
+LevelSet asModel(const FloatGridPtr& grid, const std::string& path) {
+    LevelSet model;
+    model.grid = grid;
+    model.domain = solidBox(*grid, path);
+    stampLevelSet(model);
+    return model;
+}
+
+// The points that faces use: a mesh file may hold others.
+std::vector<Vec3f> usedPoints(const Mesh& mesh) {
+    std::vector<char> used(mesh.points.size(), 0);
+    for (const Triangle& t : mesh.triangles)
+        for (std::uint32_t i : t) used[i] = 1;
+    for (const Quad& q : mesh.quads)
+        for (std::uint32_t i : q) used[i] = 1;
+    std::vector<Vec3f> points;
+    for (std::size_t i = 0; i < used.size(); ++i)
+        if (used[i]) points.push_back(mesh.points[i]);
+    return points;
 }
 
 LevelSet loadMesh(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
     const Mesh mesh = readMesh(path, ctx);
-    double voxelSize = options.voxelSize;
-    if (voxelSize == 0) {
-        const int resolution = options.resolution > 0 ? options.resolution : kDefaultResolution;
-        voxelSize = longestSide(path, mesh) / resolution;
-        char text[128];
-        std::snprintf(text, sizeof text, ": voxel size %.6g (%d voxels along the longest side%s)", voxelSize,
-                      resolution, options.resolution > 0 ? "" : "; --resolution or --voxel-size sets it");
-        message(ctx, options.resolution > 0 ? MessageLevel::Detail : MessageLevel::Note, path + text);
-    }
-    LevelSet model;
-    model.grid = meshToSolid(mesh, voxelSize, options.halfWidth, path, options.solid, ctx);
-    model.domain = solidBox(*model.grid, path);
-    stampLevelSet(model);
-    return model;
+    const double voxelSize = chooseVoxelSize(path, usedPoints(mesh), options, ctx);
+    return asModel(meshToSolid(mesh, voxelSize, options.halfWidth, path, options.solid, ctx), path);
+}
+
+LevelSet loadPoints(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
+    PointFile file = readPoints(path, ctx);
+    if (file.invalid > 0)
+        message(ctx, MessageLevel::Note,
+                path + ": " + std::to_string(file.invalid) + " points without finite coordinates left out");
+    // Outliers would make the voxels too large.
+    PointCloud core = file.cloud;
+    dropOutliers(core, ctx);
+    const double voxelSize = chooseVoxelSize(path, core.points, options, ctx);
+    return asModel(pointsToSolid(file.cloud, voxelSize, options.halfWidth, path, options.solid, ctx), path);
 }
 
 // A level set at the voxel size asked for: its own if none is.
@@ -74,14 +104,15 @@ bool isMeshPath(const std::string& path) {
 }
 
 bool isModelPath(const std::string& path) {
-    return readExtensionOf(path) == "vdb" || isMeshPath(path);
+    return readExtensionOf(path) == "vdb" || isMeshPath(path) || isPointPath(path);
 }
 
 void requireModelPath(const std::string& path) {
     if (isModelPath(path)) return;
-    throw Error(
-        ErrorCode::InvalidOption,
-        path + ": unknown extension; models are .vdb, .obj, .ply, .stl, .off or .mesh, each also with .gz");
+    throw Error(ErrorCode::InvalidOption, path +
+                                              ": unknown extension; models are .vdb, meshes .obj, .ply, "
+                                              ".stl, .off, .mesh, points .ply, .xyz, .pwn, .pcd, "
+                                              "each also with .gz");
 }
 
 LevelSet loadModel(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
@@ -93,6 +124,7 @@ LevelSet loadModel(const std::string& path, const ModelOptions& options, const R
     requireOption(options.halfWidth >= 1.5 && options.halfWidth <= 100, "half-width",
                   std::to_string(options.halfWidth), "from 1.5 to 100 voxels");
     const ThreadLimit limit(ctx);
+    if (isPointPath(path) || holdsPoints(path)) return loadPoints(path, options, ctx);
     if (isMeshPath(path)) return loadMesh(path, options, ctx);
     VdbReadOptions read;
     read.gridName = options.grid;

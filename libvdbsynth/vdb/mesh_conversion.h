@@ -23,7 +23,7 @@ FloatGridPtr meshToLevelSet(const Mesh& mesh, double voxelSize, double halfWidth
 /// What to make of a mesh that does not bound a solid.
 enum class OpenMesh {
     Close,  ///< a solid: inside is where the generalised winding number is over one half
-    Shell   ///< a sheet of some thickness about the faces, of any mesh
+    Shell   ///< a sheet of some thickness about the faces or points, of any mesh or cloud
 };
 
 struct SolidOptions {
@@ -41,6 +41,18 @@ struct SolidOptions {
 /// @par Repeats same bits for any number of threads
 FloatGridPtr meshToSolid(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
                          const SolidOptions& options = {}, const RunContext& ctx = {});
+
+/// A level set of points: their outliers left out with a warning, normals estimated where there are none.
+/// Within a few spacings of a point the surface is the moving least squares one of their tangent planes
+/// [kolluri2008], in gaps it is where the winding number of the points is one half [barill2018].
+/// @param cloud  [world] normals outward, or empty
+/// @throw Error InvalidOption, Unusable (under 8 points), EmptyInput (they enclose nothing), Memory,
+/// Cancelled
+/// @par Cost    some microseconds for each voxel near a point   @par Repeats same bits for any number of
+/// threads
+FloatGridPtr pointsToSolid(const PointCloud& cloud, double voxelSize, double halfWidth,
+                           const std::string& name, const SolidOptions& options = {},
+                           const RunContext& ctx = {});
 
 /// For meshToSolid. A field about faces in index space, negative inside by the winding number, its values
 /// distances [voxels] near the faces; its zero level also closes openings. No level set yet.

@@ -4,8 +4,11 @@
 #include "libvdbsynth/geometry/mesh.h"
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/path.h"
+#include "libvdbsynth/io/point_file.h"
 
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
 
 namespace vdbsynth::cli {
 namespace {
@@ -33,6 +36,23 @@ Json meshInfo(const std::string& path, const Run& run) {
                 {"non_manifold_edges", s.nonManifoldEdges},
                 {"misoriented_edges", s.misorientedEdges},
                 {"closed_manifold", s.closedManifold()}};
+}
+
+Json pointsInfo(const std::string& path, const Run& run) {
+    const PointFile file = readPoints(path, run.context);
+    Vec3f low = file.cloud.points.front(), high = low;
+    for (const Vec3f& p : file.cloud.points)
+        for (int axis = 0; axis < 3; ++axis) {
+            low[axis] = std::min(low[axis], p[axis]);
+            high[axis] = std::max(high[axis], p[axis]);
+        }
+    return Json{{"file", path},
+                {"kind", "points"},
+                {"points", file.cloud.points.size()},
+                {"invalid_points", file.invalid},
+                {"normals", !file.cloud.normals.empty()},
+                {"bounds_min", triple(cast<double>(low))},
+                {"bounds_max", triple(cast<double>(high))}};
 }
 
 Json gridInfo(const GridSummary& s) {
@@ -117,7 +137,9 @@ void info(Run& run) {
     const std::string path = run.arguments.inputs[0];
     requireModelPath(path);
     run.modelOptions();
-    const Json json = isMeshPath(path) ? meshInfo(path, run) : vdbInfo(path, run);
+    const Json json = isPointPath(path) || holdsPoints(path) ? pointsInfo(path, run)
+                      : isMeshPath(path)                     ? meshInfo(path, run)
+                                                             : vdbInfo(path, run);
     if (run.arguments.has("json"))
         printLine(json.dump(2, ' ', false, Json::error_handler_t::replace));
     else

@@ -1,6 +1,7 @@
 #include "tools/vdb_synth/command.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/io/path.h"
 #include "libvdbsynth/pipeline/match.h"
 
 #include <nlohmann/json.hpp>
@@ -29,7 +30,7 @@ void match(Run& run) {
     for (const std::string& path : run.arguments.inputs) requireModelPath(path);
     const LevelSet exemplar = run.load(run.arguments.inputs[0]);
     ModelOptions queryOptions = run.modelOptions();
-    if (isMeshPath(run.arguments.inputs[1])) {
+    if (readExtensionOf(run.arguments.inputs[1]) != "vdb") {
         // With several models the first one's voxel size holds for all.
         queryOptions.voxelSize = voxelSizeOf(*exemplar.grid);
         queryOptions.resolution = 0;

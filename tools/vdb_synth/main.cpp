@@ -184,11 +184,10 @@ int dispatch(char** argv, const std::string& name, const std::vector<std::string
 const std::vector<Option>& commonOptions() {
     static const std::vector<Option> options{
         {"output", "FILE", "where the result goes, kind by extension; may be given several times", true, 'o'},
-        {"voxel-size", "W", "side of a voxel for meshes (world)"},
-        {"resolution", "N", "voxels along the longest side of a mesh, default 128"},
+        {"voxel-size", "W", "side of a voxel (world); a VDB is resampled"},
+        {"resolution", "N", "voxels along the longest side, default 128 for meshes and points"},
         {"half-width", "V", "half-width of the narrow band (voxels), default 3"},
-        {"open", "KIND",
-         "of a mesh that is no solid: close its openings (default), or a shell about its faces"},
+        {"open", "KIND", "of what is no solid: close it (default), or a shell about its faces or points"},
         {"thickness", "W", "of that shell (world)"},
         {"grid", "NAME", "which grid of a VDB file"},
         {"iso", "VALUE", "a fog volume is solid above this value"},

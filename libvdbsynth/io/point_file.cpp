@@ -1,0 +1,78 @@
+#include "libvdbsynth/io/point_file.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/io/gzip.h"
+#include "libvdbsynth/io/path.h"
+#include "libvdbsynth/io/point_readers.h"
+#include "libvdbsynth/io/text_scanner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+namespace vdbsynth {
+namespace {
+
+bool isFinite(const Vec3f& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// Leaves out points that are not finite; normals that one point lacks, for all.
+std::size_t clean(PointCloud& cloud) {
+    bool normals = cloud.normals.size() == cloud.points.size();
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+        if (!isFinite(cloud.points[i])) continue;
+        cloud.points[kept] = cloud.points[i];
+        if (normals) {
+            const float size = isFinite(cloud.normals[i]) ? length(cloud.normals[i]) : 0;
+            normals = size > 1e-6f;
+            cloud.normals[kept] = normals ? cloud.normals[i] * (1 / size) : Vec3f{};
+        }
+        ++kept;
+    }
+    const std::size_t dropped = cloud.points.size() - kept;
+    cloud.points.resize(kept);
+    cloud.normals.resize(normals ? kept : 0);
+    return dropped;
+}
+
+}  // namespace
+
+bool isPointPath(const std::string& path) {
+    const std::string extension = readExtensionOf(path);
+    return extension == "xyz" || extension == "pwn" || extension == "pcd";
+}
+
+bool holdsPoints(const std::string& path) {
+    if (readExtensionOf(path) != "ply") return false;
+    // A header is short; the whole of a large file need not be read twice.
+    std::string start(1 << 16, '\0');
+    std::ifstream file(path, std::ios::binary);
+    file.read(start.data(), std::streamsize(start.size()));
+    start.resize(std::size_t(std::max<std::streamsize>(file.gcount(), 0)));
+    const bool whole = isGzip(start) || start.find("end_header") == std::string::npos;
+    return plyFaceCount(path, whole ? readWholeFile(path) : start) == 0;
+}
+
+PointFile readPoints(const std::string& path, const RunContext& ctx) {
+    const std::string extension = readExtensionOf(path);
+    if (!isPointPath(path) && extension != "ply")
+        throw Error(ErrorCode::InvalidOption,
+                    path + ": unknown extension; points are .ply, .xyz, .pwn or .pcd");
+    Stage stage(ctx, "reading " + path, 2, /* reading= */ true);
+    const std::string content = readWholeFile(path);
+    stage.advance();
+    if (content.empty()) throw Error(ErrorCode::BadData, path + ": the file is empty");
+    PointFile file;
+    file.cloud = extension == "ply"   ? readPlyPoints(path, content)
+                 : extension == "pcd" ? readPcd(path, content)
+                                      : readRows(path, content);
+    file.invalid = clean(file.cloud);
+    if (file.cloud.points.empty())
+        throw Error(ErrorCode::EmptyInput, path + ": no points with finite coordinates");
+    stage.advance();
+    return file;
+}
+
+}  // namespace vdbsynth

@@ -1,0 +1,33 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/geometry/point_cloud.h"
+
+#include <string>
+
+namespace vdbsynth {
+
+/// True if the path ends in .xyz, .pwn or .pcd, any case, perhaps with .gz after that. A .ply may also hold
+/// points; see holdsPoints.
+bool isPointPath(const std::string& path);
+
+/// True for a .ply file without any face element, or with an empty one.
+/// @throw Error as readPoints
+bool holdsPoints(const std::string& path);
+
+struct PointFile {
+    PointCloud cloud;
+    std::size_t invalid = 0;  ///< points left out because a coordinate was not finite
+};
+
+/// Reads a point cloud, with normals where it has them and every one has a length:
+/// - .xyz, .pwn: rows of numbers; of six or more columns 4 to 6 are normals if all are unit vectors, within 2
+/// %.
+///   A .pwn may also begin with a count, followed by all points, then all normals;
+/// - .pcd: ascii, binary and binary_compressed, fields of any type and order;
+/// - .ply: as readMesh, vertices with nx ny nz.
+/// Strict as readMesh, but for not finite coordinates, with which scanners mark pixels without a point.
+/// @throw Error Io, BadData (truncated, corrupt, no x y z), EmptyInput (no points), InvalidOption (extension)
+/// @par Cost    O(file size)   @par Repeats yes
+PointFile readPoints(const std::string& path, const RunContext& ctx = {});
+
+}  // namespace vdbsynth

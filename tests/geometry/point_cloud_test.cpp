@@ -1,0 +1,99 @@
+#include "libvdbsynth/geometry/point_cloud.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "libvdbsynth/base/random.h"
+#include "libvdbsynth/geometry/point_neighbours.h"
+#include "tests/support/makers.h"
+
+using namespace vdbsynth;
+
+namespace {
+
+PointCloud noise(std::size_t count, std::uint64_t seed) {
+    Random random(seed, 1, 2);
+    PointCloud cloud;
+    for (std::size_t i = 0; i < count; ++i)
+        cloud.points.push_back({float(random.uniform()), float(random.uniform()), float(random.uniform())});
+    return cloud;
+}
+
+PointCloud ball(float radius) {
+    PointCloud cloud;
+    for (const Vec3f& p : test::sphereMesh(double(radius), 4).points) cloud.points.push_back(p);
+    return cloud;
+}
+
+}  // namespace
+
+TEST_CASE("PointNeighbours: the nearest are those of a scan", "[geometry][oracle]") {
+    const PointCloud cloud = noise(500, 3);
+    const PointNeighbours tree(cloud.points);
+    for (const Vec3f& place : noise(50, 4).points) {
+        std::vector<float> all;
+        for (const Vec3f& p : cloud.points) all.push_back(dot(p - place, p - place));
+        std::sort(all.begin(), all.end());
+        std::uint32_t numbers[10];
+        float squared[10];
+        REQUIRE(tree.nearest(place, 10, numbers, squared) == 10);
+        for (std::size_t k = 0; k < 10; ++k) {
+            CHECK(squared[k] == Approx(all[k]).epsilon(1e-5));
+            CHECK(dot(cloud.points[numbers[k]] - place, cloud.points[numbers[k]] - place) ==
+                  Approx(squared[k]));
+        }
+    }
+    const std::vector<Vec3f> few{{0, 0, 0}, {1, 0, 0}};
+    std::uint32_t numbers[5];
+    float squared[5];
+    CHECK(PointNeighbours(few).nearest({0.9f, 0, 0}, 5, numbers, squared) == 2);
+    CHECK(numbers[0] == 1);
+}
+
+TEST_CASE("pointSpacing: about the step of a square lattice", "[geometry][oracle]") {
+    PointCloud plane;
+    for (int x = 0; x < 20; ++x)
+        for (int y = 0; y < 20; ++y) plane.points.push_back({float(x) * 0.5f, float(y) * 0.5f, 1});
+    const std::vector<float> spacing = pointSpacing(plane);
+    // Four neighbours at the step, two at root two of it: root of (4 + 4) / 6 / 2.
+    CHECK(spacing[10 * 20 + 10] == Approx(0.5 * std::sqrt(8.0 / 12)));
+}
+
+TEST_CASE("dropOutliers: repeats and far points go, the rest stays in order", "[geometry][property]") {
+    PointCloud cloud = ball(10);
+    const std::vector<Vec3f> before = cloud.points;
+    cloud.points.push_back({100, 0, 0});
+    cloud.points.push_back(before[5]);
+    cloud.points.push_back({0, -300, 7});
+    CHECK(dropOutliers(cloud) == 2);
+    REQUIRE(cloud.points.size() == before.size());
+    for (std::size_t i = 0; i < before.size(); ++i) CHECK(length(cloud.points[i] - before[i]) == 0);
+    CHECK(dropOutliers(cloud) == 0);
+}
+
+TEST_CASE("estimateNormals: of a ball they look outward", "[geometry][property]") {
+    PointCloud cloud = ball(10);
+    estimateNormals(cloud);
+    for (std::size_t i = 0; i < cloud.points.size(); ++i)
+        REQUIRE(dot(cloud.normals[i], normalized(cloud.points[i])) > 0.98f);
+    RunContext one;
+    one.threads = 1;
+    PointCloud again = ball(10);
+    estimateNormals(again, one);
+    for (std::size_t i = 0; i < cloud.points.size(); ++i)
+        REQUIRE(length(again.normals[i] - cloud.normals[i]) == 0);
+}
+
+TEST_CASE("estimateNormals: fewer points than a plane wants, and all on a line", "[geometry][degenerate]") {
+    PointCloud few;
+    few.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    estimateNormals(few);
+    for (const Vec3f& n : few.normals) CHECK(std::abs(n.z) == Approx(1));
+    PointCloud line;
+    for (int i = 0; i < 30; ++i) line.points.push_back({float(i), 0, 0});
+    estimateNormals(line);
+    for (const Vec3f& n : line.normals) CHECK(length(n) == Approx(1));
+}

@@ -16,10 +16,15 @@ namespace {
 // around it: bytes seen on bunny, dragon and nefertiti at 100 to 1000 voxels.
 constexpr double kBytesPerBandVoxel = 24;
 
-// Empty if a level set encloses what its mesh promises, else what is wrong.
-std::string missingVolume(const openvdb::FloatGrid& grid, const Mesh& mesh, double voxelSize) {
-    const double enclosed = solidVoxels(grid) * voxelSize * voxelSize * voxelSize;
-    double volume = 0, area = 0;
+// What a mesh promises and what its level set holds, in the world's unit.
+struct Volumes {
+    double enclosed = 0, signedVolume = 0, area = 0;
+};
+
+Volumes volumesOf(const openvdb::FloatGrid& grid, const Mesh& mesh, double voxelSize) {
+    Volumes volumes;
+    volumes.enclosed = solidVoxels(grid) * voxelSize * voxelSize * voxelSize;
+    double &volume = volumes.signedVolume, &area = volumes.area;
     const Vec3d origin =
         cast<double>(mesh.points[mesh.triangles.empty() ? mesh.quads[0][0] : mesh.triangles[0][0]]);
     const auto add = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
@@ -33,6 +38,18 @@ std::string missingVolume(const openvdb::FloatGrid& grid, const Mesh& mesh, doub
         add(q[0], q[1], q[2]);
         add(q[0], q[2], q[3]);
     }
+    return volumes;
+}
+
+// OpenVDB makes solid what no path from outside reaches; a mesh may mean that as a cavity. Voxels at the
+// surface alone can make a difference of a small part of a voxel's depth.
+bool lostCavities(const Volumes& v, double voxelSize) {
+    return v.enclosed - std::abs(v.signedVolume) > 0.25 * v.area * voxelSize;
+}
+
+// Empty if a level set encloses what its mesh promises, else what is wrong.
+std::string missingVolume(const Volumes& volumes, const Mesh& mesh, double voxelSize) {
+    const double enclosed = volumes.enclosed, volume = volumes.signedVolume, area = volumes.area;
     // Voxel centres that lie on a sheet by chance count as inside: about a voxel of depth over its area.
     const bool crumbs = enclosed < 1.5 * area * voxelSize && enclosed > 2 * std::abs(volume);
     if (!crumbs && enclosed >= 0.5 * std::abs(volume) && enclosed > 0) return "";
@@ -146,7 +163,8 @@ FloatGridPtr meshToSolid(const Mesh& mesh, double voxelSize, double halfWidth, c
                   "at least a voxel, which is " + std::to_string(voxelSize));
     if (!shell && isBalanced(mesh)) {
         const FloatGridPtr grid = openVdbLevelSet(mesh, voxelSize, halfWidth, name, ctx);
-        if (missingVolume(*grid, mesh, voxelSize).empty()) return grid;
+        const Volumes volumes = volumesOf(*grid, mesh, voxelSize);
+        if (missingVolume(volumes, mesh, voxelSize).empty() && !lostCavities(volumes, voxelSize)) return grid;
     }
     Prepared prepared;
     if (shell)
@@ -159,7 +177,13 @@ FloatGridPtr meshToSolid(const Mesh& mesh, double voxelSize, double halfWidth, c
             ctx, MessageLevel::Warning,
             name + ": " + prepared.found +
                 (prepared.balanced ? "; turned" : "; inside is where the faces wind round more than half"));
-    if (prepared.balanced) return meshToLevelSet(prepared.mesh, voxelSize, halfWidth, name, ctx);
+    if (prepared.balanced) {
+        const FloatGridPtr grid = openVdbLevelSet(prepared.mesh, voxelSize, halfWidth, name, ctx);
+        const Volumes volumes = volumesOf(*grid, prepared.mesh, voxelSize);
+        const std::string wrong = missingVolume(volumes, prepared.mesh, voxelSize);
+        if (!wrong.empty()) throw Error(ErrorCode::Unusable, name + ": " + wrong);
+        if (!lostCavities(volumes, voxelSize)) return grid;
+    }
     requireBandMemory(mesh, voxelSize, halfWidth + options.thickness / voxelSize, name, ctx);
     Stage stage(ctx, "mesh to level set", 1);
     for (Vec3f& p : prepared.mesh.points) p = cast<float>(cast<double>(p) * (1 / voxelSize));
@@ -173,7 +197,7 @@ FloatGridPtr meshToLevelSet(const Mesh& mesh, double voxelSize, double halfWidth
                             const RunContext& ctx) {
     checkOptions(voxelSize, halfWidth);
     const FloatGridPtr grid = openVdbLevelSet(mesh, voxelSize, halfWidth, name, ctx);
-    const std::string wrong = missingVolume(*grid, mesh, voxelSize);
+    const std::string wrong = missingVolume(volumesOf(*grid, mesh, voxelSize), mesh, voxelSize);
     if (!wrong.empty()) throw Error(ErrorCode::Unusable, name + ": " + wrong);
     return grid;
 }

@@ -88,6 +88,19 @@ TEST_CASE("meshToSolid: a ball whose faces are all given from both sides is a ba
           Approx(volumeOf(*meshToSolid(ball, 0.5, 3, "ball"))).epsilon(0.01));
 }
 
+TEST_CASE("meshToSolid: a cavity stays a cavity", "[vdb][property]") {
+    openvdb::initialize();
+    Mesh hollow = test::sphereMesh(10, 5);
+    const Mesh inner = test::sphereMesh(6, 4);
+    const std::uint32_t shift = std::uint32_t(hollow.points.size());
+    hollow.points.insert(hollow.points.end(), inner.points.begin(), inner.points.end());
+    for (const Triangle& t : inner.triangles)
+        hollow.triangles.push_back({t[1] + shift, t[0] + shift, t[2] + shift});
+    const FloatGridPtr grid = meshToSolid(hollow, 0.5, 3, "hollow");
+    CHECK(volumeOf(*grid) == Approx(4188.8 - 904.8).epsilon(0.02));
+    CHECK(grid->tree().getValue(openvdb::Coord(0, 0, 0)) > 0);
+}
+
 TEST_CASE("meshToSolid: same bits for any number of threads", "[vdb][determinism]") {
     openvdb::initialize();
     RunContext one, two;

@@ -129,18 +129,23 @@ BandQuality measureBand(const openvdb::FloatGrid& grid, const RunContext& ctx) {
             for (auto it = leaves[i]->cbeginValueOn(); it; ++it) {
                 if (!std::isfinite(*it)) finite[i] = 0;
                 if (std::abs(*it) >= voxel) continue;
-                float squared = 0;
+                float central = 0, upwind = 0;
                 bool complete = true;
+                const float sign = *it < 0 ? -1.f : 1.f;
                 for (int axis = 0; axis < 3; ++axis) {
                     openvdb::Coord low = it.getCoord(), high = it.getCoord();
                     --low[axis];
                     ++high[axis];
                     complete = complete && accessor.isValueOn(low) && accessor.isValueOn(high);
-                    const float d = (accessor.getValue(high) - accessor.getValue(low)) / (2 * voxel);
-                    squared += d * d;
+                    const float before = accessor.getValue(low), after = accessor.getValue(high);
+                    const float d = (after - before) / (2 * voxel);
+                    central += d * d;
+                    const float drop = std::max({0.f, sign * (*it - before), sign * (*it - after)}) / voxel;
+                    upwind += drop * drop;
                 }
                 if (complete)
-                    errors[i].push_back(std::abs(std::sqrt(squared) - 1));
+                    errors[i].push_back(
+                        std::min(std::abs(std::sqrt(central) - 1), std::abs(std::sqrt(upwind) - 1)));
                 else
                     ++missing[i];
             }

@@ -44,7 +44,9 @@ std::string levelSetHash(const openvdb::FloatGrid& grid);
 
 /// How true to a distance field a level set is, measured on its active voxels within the band.
 struct BandQuality {
-    double gradientErrorMean = 0;  ///< mean of | |grad| - 1 |, central differences, |value| < 1 voxel
+    /// Mean of | |grad| - 1 | where |value| < 1 voxel, by central or by upwind differences, whichever is
+    /// nearer: on the ridge inside a wall or bar a true distance has no central gradient.
+    double gradientErrorMean = 0;
     double gradientErrorP99 = 0;
     std::size_t measured = 0;           ///< voxels that were measured
     std::size_t missingNeighbours = 0;  ///< active voxels next to the zero level with an inactive neighbour

@@ -48,10 +48,20 @@ std::vector<Triangle> triangulated(const Mesh& mesh);
 /// @par Repeats yes
 MeshSummary summarize(const Mesh& mesh);
 
-/// True if every edge is run as often in one direction as in the other: the mesh bounds something everywhere,
-/// though its sheets may touch or cross. Faster than summarize.
-/// @par Cost    O(faces)
-bool isBalanced(const Mesh& mesh);
+/// What the edges of a mesh say of it.
+enum class EdgeBalance {
+    Open,      ///< some edge is run more often in one direction than in the other
+    Balanced,  ///< none is, but some edge has more than two faces: sheets touch, or faces are given twice
+    Manifold   ///< every edge has two faces that run it in opposite directions
+};
+
+/// Faster than summarize. @par Cost    O(faces)
+EdgeBalance edgeBalance(const Mesh& mesh);
+
+/// True if the mesh bounds something everywhere, though its sheets may touch or cross.
+inline bool isBalanced(const Mesh& mesh) {
+    return edgeBalance(mesh) != EdgeBalance::Open;
+}
 
 /// Makes vertices with the same coordinates one, in the faces; points stay. @return number of vertices welded
 /// @par Cost    O(vertices log vertices)   @par Repeats yes

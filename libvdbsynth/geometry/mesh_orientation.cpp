@@ -95,7 +95,7 @@ std::vector<std::uint32_t> growPart(const std::vector<std::vector<Neighbour>>& n
 
 }  // namespace
 
-bool isBalanced(const Mesh& mesh) {
+EdgeBalance edgeBalance(const Mesh& mesh) {
     // Each edge, as (low, high), once for every face: how often forward less how often backward.
     std::vector<std::uint32_t> begin(mesh.points.size() + 1, 0);
     const auto forEdges = [&mesh](auto&& visit) {
@@ -115,17 +115,19 @@ bool isBalanced(const Mesh& mesh) {
     forEdges([&](std::uint32_t a, std::uint32_t b) {
         halves[next[std::min(a, b)]++] = {std::max(a, b), a == b ? 0 : a < b ? 1 : -1};
     });
+    bool manifold = true;
     for (std::size_t v = 0; v + 1 < begin.size(); ++v) {
         std::sort(halves.begin() + begin[v], halves.begin() + begin[v + 1],
                   [](const Half& x, const Half& y) { return x.high < y.high; });
         for (std::uint32_t i = begin[v]; i < begin[v + 1];) {
             std::int32_t sum = 0;
-            const std::uint32_t high = halves[i].high;
+            const std::uint32_t high = halves[i].high, first = i;
             for (; i < begin[v + 1] && halves[i].high == high; ++i) sum += halves[i].sign;
-            if (sum != 0) return false;
+            if (sum != 0) return EdgeBalance::Open;
+            manifold = manifold && i - first == 2;
         }
     }
-    return true;
+    return manifold ? EdgeBalance::Manifold : EdgeBalance::Balanced;
 }
 
 std::size_t weldVertices(Mesh& mesh) {

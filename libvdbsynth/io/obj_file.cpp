@@ -33,9 +33,33 @@ std::vector<Vec3f> readVertexLines(const std::string& path, const std::string& c
     return points;
 }
 
+// A backslash at a line's end joins it to the next; the line end moves behind the whole, so that lines below
+// keep their numbers.
+std::string withJoinedLines(const std::string& text) {
+    if (text.find('\\') == std::string::npos) return text;
+    std::string joined;
+    joined.reserve(text.size());
+    std::size_t owed = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool carriage = i + 2 < text.size() && text[i + 1] == '\r' && text[i + 2] == '\n';
+        if (text[i] == '\\' && (carriage || (i + 1 < text.size() && text[i + 1] == '\n'))) {
+            joined += ' ';
+            ++owed;
+            i += carriage ? 2 : 1;
+        } else {
+            joined += text[i];
+            if (text[i] != '\n') continue;
+            joined.append(owed, '\n');
+            owed = 0;
+        }
+    }
+    return joined;
+}
+
 }  // namespace
 
-Mesh readObj(const std::string& path, const std::string& content) {
+Mesh readObj(const std::string& path, const std::string& text) {
+    const std::string content = withJoinedLines(text);
     Mesh mesh;
     mesh.points = readVertexLines(path, content);
     tinyobj::attrib_t attributes;

@@ -84,6 +84,14 @@ void requireBandMemory(const Mesh& mesh, double voxelSize, double halfWidth, con
                   "use a larger --voxel-size or a smaller --resolution");
 }
 
+// True for a mesh that OpenVDB converts well. Faces given twice leave gaps in its band.
+bool boundsSolid(const Mesh& mesh) {
+    const EdgeBalance balance = edgeBalance(mesh);
+    if (balance != EdgeBalance::Balanced) return balance == EdgeBalance::Manifold;
+    Mesh copy = mesh;
+    return removeDuplicateFaces(copy) == 0;
+}
+
 // The mesh as the sign rule of a solid wants it, and what was wrong with it.
 struct Prepared {
     Mesh mesh;
@@ -161,7 +169,7 @@ FloatGridPtr meshToSolid(const Mesh& mesh, double voxelSize, double halfWidth, c
                   std::to_string(options.thickness), "above 0 (world)");
     requireOption(!shell || options.thickness >= voxelSize, "thickness", std::to_string(options.thickness),
                   "at least a voxel, which is " + std::to_string(voxelSize));
-    if (!shell && isBalanced(mesh)) {
+    if (!shell && boundsSolid(mesh)) {
         const FloatGridPtr grid = openVdbLevelSet(mesh, voxelSize, halfWidth, name, ctx);
         const Volumes volumes = volumesOf(*grid, mesh, voxelSize);
         if (missingVolume(volumes, mesh, voxelSize).empty() && !lostCavities(volumes, voxelSize)) return grid;

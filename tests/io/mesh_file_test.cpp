@@ -248,3 +248,15 @@ TEST_CASE("readMesh: MEDIT surfaces, and the outside of tetrahedra", "[io][oracl
               readMesh(folder.write("c.mesh", "MeshVersionFormatted 2\nVertices\n99999999\n"));
           }).code == int(ErrorCode::BadData));
 }
+
+TEST_CASE("readMesh: OBJ lines that go on after a backslash", "[io][oracle]") {
+    const test::TemporaryFolder folder;
+    const Mesh mesh =
+        readMesh(folder.write("a.obj", "v 0 0 \\\n0\nv 1 0 0\r\nv 0 1 0\nv 1 1 0\nf 1 2 \\\r\n4 \\\n3\n"));
+    CHECK(mesh.points.size() == 4);
+    REQUIRE(mesh.quads.size() == 1);
+    CHECK(mesh.quads[0] == Quad{0, 1, 3, 2});
+    CHECK(test::contains(
+        test::thrownBy([&] { readMesh(folder.write("b.obj", "v 0 0 \\\n0\nv 1 x 0\n")); }).message,
+        "b.obj:3"));
+}

@@ -88,6 +88,17 @@ TEST_CASE("meshToSolid: a ball whose faces are all given from both sides is a ba
           Approx(volumeOf(*meshToSolid(ball, 0.5, 3, "ball"))).epsilon(0.01));
 }
 
+TEST_CASE("meshToSolid: a box with some of its faces given twice has a whole band", "[vdb][property]") {
+    openvdb::initialize();
+    Mesh box = test::boxMesh({0.1f, 0.2f, 0.3f}, {10.1f, 8.2f, 6.3f});
+    const Mesh once = box;
+    box.triangles.push_back(triangulated(once)[0]);
+    box.triangles.push_back({triangulated(once)[0][1], triangulated(once)[0][0], triangulated(once)[0][2]});
+    const FloatGridPtr grid = meshToSolid(box, 0.5, 3, "box");
+    CHECK(volumeOf(*grid) == Approx(480).epsilon(0.05));
+    CHECK(measureBand(*grid).missingNeighbours == 0);
+}
+
 TEST_CASE("meshToSolid: a cavity stays a cavity", "[vdb][property]") {
     openvdb::initialize();
     Mesh hollow = test::sphereMesh(10, 5);

@@ -256,53 +256,52 @@ std::int64_t readIndex(Body& body, const Property& property, const std::string& 
     return std::int64_t(index);
 }
 
+// Calls visit(property, number of the element, length) for every list of indices and passes over all else.
+template <typename Visit>
+void forIndexLists(Body& body, const Element& element, Visit&& visit) {
+    for (std::int64_t i = 0; i < element.count; ++i)
+        for (const Property& property : element.properties)
+            if (property.list && (property.name == "vertex_indices" || property.name == "vertex_index"))
+                visit(property, i, body.listLength(property));
+            else
+                body.skip(property);
+}
+
 void readFaces(Body& body, const Element& element, std::size_t vertices, Mesh& mesh) {
     std::vector<std::uint32_t> corners;
-    for (std::int64_t f = 0; f < element.count; ++f)
-        for (const Property& property : element.properties) {
-            if (!property.list || (property.name != "vertex_indices" && property.name != "vertex_index")) {
-                body.skip(property);
-                continue;
-            }
-            const std::int64_t count = body.listLength(property);
-            corners.clear();
-            const std::string what = "face " + std::to_string(f);
-            for (std::int64_t c = 0; c < count; ++c) {
-                const std::int64_t index = readIndex(body, property, what, vertices);
-                if (index < 0) body.fail(what + " uses vertex -1");
-                corners.push_back(std::uint32_t(index));
-            }
-            appendPolygon(mesh, corners.data(), corners.size());
+    forIndexLists(body, element, [&](const Property& property, std::int64_t face, std::int64_t count) {
+        corners.clear();
+        const std::string what = "face " + std::to_string(face);
+        for (std::int64_t c = 0; c < count; ++c) {
+            const std::int64_t index = readIndex(body, property, what, vertices);
+            if (index < 0) body.fail(what + " uses vertex -1");
+            corners.push_back(std::uint32_t(index));
         }
+        appendPolygon(mesh, corners.data(), corners.size());
+    });
 }
 
 // Triangle strips: every corner makes a face with the two before it, each second one turned; -1 begins anew.
 void readStrips(Body& body, const Element& element, std::size_t vertices, Mesh& mesh) {
-    for (std::int64_t s = 0; s < element.count; ++s)
-        for (const Property& property : element.properties) {
-            if (!property.list || (property.name != "vertex_indices" && property.name != "vertex_index")) {
-                body.skip(property);
+    forIndexLists(body, element, [&](const Property& property, std::int64_t, std::int64_t count) {
+        std::uint32_t before[2] = {0, 0};
+        std::int64_t length = 0;
+        for (std::int64_t c = 0; c < count; ++c) {
+            const std::int64_t index = readIndex(body, property, "a strip", vertices);
+            if (index < 0) {
+                length = 0;
                 continue;
             }
-            const std::int64_t count = body.listLength(property);
-            std::uint32_t before[2] = {0, 0};
-            std::int64_t length = 0;
-            for (std::int64_t c = 0; c < count; ++c) {
-                const std::int64_t index = readIndex(body, property, "a strip", vertices);
-                if (index < 0) {
-                    length = 0;
-                    continue;
-                }
-                const std::uint32_t corner = std::uint32_t(index);
-                const bool degenerate = corner == before[0] || corner == before[1] || before[0] == before[1];
-                if (length >= 2 && !degenerate)
-                    mesh.triangles.push_back(length % 2 == 0 ? Triangle{before[0], before[1], corner}
-                                                             : Triangle{before[1], before[0], corner});
-                before[0] = before[1];
-                before[1] = corner;
-                ++length;
-            }
+            const std::uint32_t corner = std::uint32_t(index);
+            const bool degenerate = corner == before[0] || corner == before[1] || before[0] == before[1];
+            if (length >= 2 && !degenerate)
+                mesh.triangles.push_back(length % 2 == 0 ? Triangle{before[0], before[1], corner}
+                                                         : Triangle{before[1], before[0], corner});
+            before[0] = before[1];
+            before[1] = corner;
+            ++length;
         }
+    });
 }
 
 }  // namespace

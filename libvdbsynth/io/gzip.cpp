@@ -59,4 +59,17 @@ std::string gunzip(const std::string& path, const std::string& content) {
     return text;
 }
 
+std::string inflateZlib(const std::string& path, const std::string& content, std::size_t size) {
+    // zlib makes at most 1032 bytes of one.
+    if (size / 1100 > content.size())
+        throw Error(ErrorCode::BadData, path + ": its compressed data is truncated");
+    std::string bytes(size, '\0');
+    uLongf made = uLongf(size);
+    const int state = uncompress(reinterpret_cast<Bytef*>(bytes.data()), &made,
+                                 reinterpret_cast<const Bytef*>(content.data()), uLong(content.size()));
+    if (state != Z_OK || made != size)
+        throw Error(ErrorCode::BadData, path + ": its compressed data is corrupt");
+    return bytes;
+}
+
 }  // namespace vdbsynth

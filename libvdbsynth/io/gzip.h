@@ -10,4 +10,8 @@ bool isGzip(const std::string& content);
 /// @throw Error BadData (truncated, corrupt, over 64 GB unpacked)
 std::string gunzip(const std::string& path, const std::string& content);
 
+/// Unpacks one zlib stream that should make `size` bytes. @throw Error BadData (corrupt, or it makes another
+/// number)
+std::string inflateZlib(const std::string& path, const std::string& content, std::size_t size);
+
 }  // namespace vdbsynth

@@ -4,6 +4,7 @@
 #include "libvdbsynth/io/mesh_readers.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/text_scanner.h"
+#include "libvdbsynth/io/whole_file.h"
 
 #include <cmath>
 #include <cstring>
@@ -26,22 +27,6 @@ void checkFaces(const std::string& path, const Mesh& mesh) {
     if (mesh.faceCount() == 0)
         throw Error(ErrorCode::EmptyInput, path + ": no faces; a mesh with at least one face is needed");
 }
-
-class Output {
-public:
-    explicit Output(const std::string& path) : mPath(path), mFile(path, std::ios::binary | std::ios::trunc) {
-        if (!mFile) throw Error(ErrorCode::Io, path + ": cannot be written: " + std::strerror(errno));
-    }
-    void write(const std::string& text) { mFile.write(text.data(), std::streamsize(text.size())); }
-    void finish() {
-        mFile.close();
-        if (!mFile) throw Error(ErrorCode::Io, mPath + ": writing failed: " + std::strerror(errno));
-    }
-
-private:
-    std::string mPath;
-    std::ofstream mFile;
-};
 
 void appendPoint(std::string& text, const Vec3f& p) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -181,24 +166,18 @@ Mesh readMesh(const std::string& path, const RunContext& ctx) {
 }
 
 void writeMesh(const std::string& path, MeshFormat format, const Mesh& mesh) {
-    Output output(path);
     switch (format) {
         case MeshFormat::Obj:
-            output.write(objText(mesh));
-            break;
+            return writeWholeFile(path, objText(mesh));
         case MeshFormat::Ply:
-            output.write(plyBytes(mesh));
-            break;
+            return writeWholeFile(path, plyBytes(mesh));
         case MeshFormat::Stl:
-            output.write(stlBytes(mesh));
-            break;
+            return writeWholeFile(path, stlBytes(mesh));
         case MeshFormat::Off:
-            output.write(offText(mesh));
-            break;
+            return writeWholeFile(path, offText(mesh));
         case MeshFormat::Medit:
             throw Error(ErrorCode::InvalidOption, path + ": MEDIT meshes are read, not written");
     }
-    output.finish();
 }
 
 void writePointsPly(const std::string& path, const PointCloud& cloud) {
@@ -212,9 +191,7 @@ void writePointsPly(const std::string& path, const PointCloud& cloud) {
         appendBytes(text, cloud.points[i]);
         if (normals) appendBytes(text, cloud.normals[i]);
     }
-    Output output(path);
-    output.write(text);
-    output.finish();
+    writeWholeFile(path, text);
 }
 
 }  // namespace vdbsynth

@@ -4,7 +4,7 @@
 #include "libvdbsynth/io/gzip.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/point_readers.h"
-#include "libvdbsynth/io/text_scanner.h"
+#include "libvdbsynth/io/whole_file.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,16 +1,10 @@
 #include "libvdbsynth/io/text_scanner.h"
 
 #include "libvdbsynth/base/error.h"
-#include "libvdbsynth/io/gzip.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <fstream>
-
-#include <sys/stat.h>
 
 namespace vdbsynth {
 namespace {
@@ -20,22 +14,6 @@ bool isBlank(char c) {
 }
 
 }  // namespace
-
-std::string readWholeFile(const std::string& path) {
-    struct stat status {};
-    if (::stat(path.c_str(), &status) != 0) throw Error(ErrorCode::Io, path + ": no such file");
-    if (S_ISDIR(status.st_mode)) throw Error(ErrorCode::Io, path + ": is a directory; name a file");
-    if (!S_ISREG(status.st_mode)) throw Error(ErrorCode::Io, path + ": is not a regular file");
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw Error(ErrorCode::Io, path + ": cannot be read: " + std::strerror(errno));
-    std::string text;
-    if (S_ISREG(status.st_mode)) text.reserve(std::size_t(status.st_size));
-    char buffer[1 << 16];
-    while (file.read(buffer, sizeof buffer) || file.gcount() > 0)
-        text.append(buffer, std::size_t(file.gcount()));
-    if (file.bad()) throw Error(ErrorCode::Io, path + ": reading failed");
-    return isGzip(text) ? gunzip(path, text) : text;
-}
 
 TextScanner::TextScanner(const std::string& path, std::string_view text, char comment, std::size_t start)
     : mPath(path), mText(text), mAt(start), mComment(comment) {}

@@ -6,10 +6,6 @@
 
 namespace vdbsynth {
 
-/// Whole content of a file, unpacked if it is a gzip file whatever its name.
-/// @throw Error Io (missing, a directory, not readable)
-std::string readWholeFile(const std::string& path);
-
 /// Walks over the words and numbers of a text file in memory. Numbers are parsed without the locale;
 /// errors name the file and the line.
 class TextScanner {

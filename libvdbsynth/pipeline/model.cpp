@@ -5,9 +5,13 @@
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/point_file.h"
+#include "libvdbsynth/io/raster_file.h"
+#include "libvdbsynth/pipeline/field_model.h"
 #include "libvdbsynth/vdb/mesh_conversion.h"
 #include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/vdb_file.h"
+
+#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>
@@ -96,6 +100,23 @@ LevelSet atVoxelSize(const std::string& path, const LevelSet& model, const Model
     return resampled(model, wanted, ctx);
 }
 
+// An image as a slab, a volume by its threshold or labels; both have a domain.
+LevelSet loadRaster(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
+    const Raster raster = readRaster(path, ctx);
+    const bool image = !raster.stack && raster.size.z == 1 && !options.imageAsVolume;
+    HeightOptions heights = options.heights;
+    heights.voxelSize = options.voxelSize;
+    heights.resolution = options.resolution;
+    const RasterField field =
+        image ? heightField(path, raster, heights, ctx) : volumeField(path, raster, options.volume, ctx);
+    if (!field.description.empty()) message(ctx, MessageLevel::Note, path + ": " + field.description);
+    LevelSet model = modelFromField(field.field, kRasterFieldLimit, /* exact= */ false, field.domain,
+                                    field.voxelSize, path, "nothing of it is solid", ctx);
+    const Vec3d& o = field.origin;
+    if (!(o.x == 0 && o.y == 0 && o.z == 0)) model.grid->transform().postTranslate({o.x, o.y, o.z});
+    return image ? model : atVoxelSize(path, model, options, ctx);
+}
+
 }  // namespace
 
 bool isMeshPath(const std::string& path) {
@@ -104,15 +125,16 @@ bool isMeshPath(const std::string& path) {
 }
 
 bool isModelPath(const std::string& path) {
-    return readExtensionOf(path) == "vdb" || isMeshPath(path) || isPointPath(path);
+    return readExtensionOf(path) == "vdb" || isMeshPath(path) || isPointPath(path) || isRasterPath(path);
 }
 
 void requireModelPath(const std::string& path) {
     if (isModelPath(path)) return;
     throw Error(ErrorCode::InvalidOption, path +
                                               ": unknown extension; models are .vdb, meshes .obj, .ply, "
-                                              ".stl, .off, .mesh, points .ply, .xyz, .pwn, .pcd, "
-                                              "each also with .gz");
+                                              ".stl, .off, .mesh, points .ply, .xyz, .pwn, "
+                                              ".pcd, " +
+                                              kRasterExtensions + ", each also with .gz");
 }
 
 LevelSet loadModel(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
@@ -126,6 +148,7 @@ LevelSet loadModel(const std::string& path, const ModelOptions& options, const R
     const ThreadLimit limit(ctx);
     if (isPointPath(path) || holdsPoints(path)) return loadPoints(path, options, ctx);
     if (isMeshPath(path)) return loadMesh(path, options, ctx);
+    if (isRasterPath(path)) return loadRaster(path, options, ctx);
     VdbReadOptions read;
     read.gridName = options.grid;
     read.iso = options.iso;

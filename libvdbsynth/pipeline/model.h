@@ -1,5 +1,6 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/grid/raster_field.h"
 #include "libvdbsynth/vdb/level_set.h"
 #include "libvdbsynth/vdb/mesh_conversion.h"
 
@@ -15,7 +16,10 @@ struct ModelOptions {
     double halfWidth = 3;  ///< [voxels] of the level set made from a mesh, 1.5..100
     SolidOptions solid;    ///< what to make of meshes that do not bound a solid
     std::string grid;      ///< which grid of a VDB file; empty: see VdbReadOptions
-    std::optional<double> iso;  ///< makes a fog volume a solid
+    std::optional<double> iso;   ///< makes a fog volume a solid
+    HeightOptions heights;       ///< of images; its voxel size and resolution are those above
+    VolumeOptions volume;        ///< of volumes
+    bool imageAsVolume = false;  ///< takes an image for a volume of one slice
 };
 
 inline constexpr int kDefaultResolution = 128;
@@ -28,8 +32,8 @@ bool isMeshPath(const std::string& path);
 void requireModelPath(const std::string& path);
 
 /// Any supported geometry as a level set: the one door of every command that wants a model.
-/// @throw Error  as readVdbModel (vdb/vdb_file.h), readMesh (io/mesh_file.h) and meshToLevelSet
-/// (vdb/mesh_conversion.h)
+/// @throw Error  as readVdbModel (vdb/vdb_file.h), readMesh (io/mesh_file.h), readRaster (io/raster_file.h),
+/// heightField and volumeField (grid/raster_field.h) and meshToSolid (vdb/mesh_conversion.h)
 /// @par Repeats  same bits for any number of threads
 LevelSet loadModel(const std::string& path, const ModelOptions& options = {}, const RunContext& ctx = {});
 

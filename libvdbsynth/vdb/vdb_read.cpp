@@ -1,6 +1,6 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/gzip.h"
-#include "libvdbsynth/io/text_scanner.h"
+#include "libvdbsynth/io/whole_file.h"
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "libvdbsynth/vdb/wall.h"

@@ -1,4 +1,5 @@
 #include "libvdbsynth/io/text_scanner.h"
+#include "libvdbsynth/io/whole_file.h"
 
 #include <catch2/catch.hpp>
 

@@ -17,9 +17,9 @@ for room, direct in [
 # Which rooms may see which third party.
 ALLOWED = {
     "openvdb/": {"vdb", "pipeline"}, "tbb/": {"base"}, "xxhash.h": {"base"}, "png.h": {"io"},
-    "tiny_obj_loader.h": {"io"}, "zlib.h": {"io"}, "nanoflann.hpp": {"geometry"}, "Eigen/": {"math", "geometry"}, "boost/": {"tools"}, "nlohmann/": {"tools"},
+    "tiny_obj_loader.h": {"io"}, "tiffio.h": {"io"}, "jpeglib.h": {"io"}, "Imf": {"io"}, "pugixml.hpp": {"io"}, "tiny_gltf.h": {"io"}, "zlib.h": {"io"}, "nanoflann.hpp": {"geometry"}, "Eigen/": {"math", "geometry"}, "boost/": {"tools"}, "nlohmann/": {"tools"},
 }
-ONE_FILE = {"png.h", "zlib.h", "nanoflann.hpp", "tiny_obj_loader.h", "xxhash.h", "boost/"}
+ONE_FILE = {"png.h", "zlib.h", "nanoflann.hpp", "tiny_obj_loader.h", "tiffio.h", "jpeglib.h", "Imf", "pugixml.hpp", "tiny_gltf.h", "xxhash.h", "boost/"}
 
 
 def main(root):

@@ -5,6 +5,7 @@
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/point_file.h"
+#include "libvdbsynth/io/raster_file.h"
 
 #include <nlohmann/json.hpp>
 
@@ -53,6 +54,28 @@ Json pointsInfo(const std::string& path, const Run& run) {
                 {"normals", !file.cloud.normals.empty()},
                 {"bounds_min", triple(cast<double>(low))},
                 {"bounds_max", triple(cast<double>(high))}};
+}
+
+Json rasterInfo(const std::string& path, const Run& run) {
+    const Raster raster = readRaster(path, run.context);
+    const RasterRange range = rangeOf(raster);
+    Json info{{"file", path},
+              {"kind", raster.stack || raster.size.z > 1 ? "volume" : "image"},
+              {"size", triple(raster.size)},
+              {"channels", raster.channels},
+              {"minimum", range.minimum},
+              {"maximum", range.maximum},
+              {"white", raster.white > 0 ? Json(raster.white) : Json(nullptr)},
+              {"whole_numbers", range.whole},
+              {"distinct_values", range.distinct.empty() ? Json("over 256") : Json(range.distinct.size())},
+              {"samples_without_data", range.missing},
+              {"infinite_samples", range.infinite}};
+    if (raster.knownSpacing) {
+        info["spacing"] = triple(raster.spacing);
+        info["origin"] = triple(raster.origin);
+        info["unit"] = raster.unit.empty() ? Json(nullptr) : Json(raster.unit);
+    }
+    return info;
 }
 
 Json gridInfo(const GridSummary& s) {
@@ -139,6 +162,7 @@ void info(Run& run) {
     run.modelOptions();
     const Json json = isPointPath(path) || holdsPoints(path) ? pointsInfo(path, run)
                       : isMeshPath(path)                     ? meshInfo(path, run)
+                      : isRasterPath(path)                   ? rasterInfo(path, run)
                                                              : vdbInfo(path, run);
     if (run.arguments.has("json"))
         printLine(json.dump(2, ' ', false, Json::error_handler_t::replace));

@@ -2,7 +2,7 @@
 #include "tools/vdb_synth/version.h"
 
 #include "libvdbsynth/base/error.h"
-#include "libvdbsynth/io/text_scanner.h"
+#include "libvdbsynth/io/whole_file.h"
 
 #include <nlohmann/json.hpp>
 
@@ -191,6 +191,12 @@ const std::vector<Option>& commonOptions() {
         {"thickness", "W", "of that shell (world)"},
         {"grid", "NAME", "which grid of a VDB file"},
         {"iso", "VALUE", "a fog volume is solid above this value"},
+        {"pixel-size", "P", "side of an image's pixel, or of a volume's smallest cell (world)"},
+        {"height", "H", "of an image from black to white, or from its lowest to its highest value (world)"},
+        {"base", "B", "solid under an image's lowest place (world), default a 20th of its longer side"},
+        {"plane", "PLANE", "where an image lies: xy (default), yz or zx; heights go along the third axis"},
+        {"threshold", "VALUE", "a volume (npy, tif, vti, nii ...) is solid above this value"},
+        {"labels", "LIST", "a volume is solid where it has one of these values, for example 1,4,10-20"},
         {"threads", "N", "number of threads, default one per core; results do not depend on it"},
         {"seed", "N", "seed of everything random, default 0"},
         {"max-memory", "BYTES", "most memory to use, for example 4G; default 80 % of the machine's"},

@@ -3,6 +3,7 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/hash.h"
 #include "libvdbsynth/io/path.h"
+#include "libvdbsynth/io/text_scanner.h"
 #include "tools/vdb_synth/stop_flag.h"
 #include "tools/vdb_synth/version.h"
 
@@ -151,6 +152,45 @@ void Run::requireInputs(std::size_t low, std::size_t high) const {
             arguments.inputs[high] + ": one input too many; usage: vdb_synth " + mImpl->command.usage);
 }
 
+namespace {
+
+// "1,4,10-20" as ranges.
+std::vector<LabelRange> parseLabels(const std::string& text) {
+    std::vector<LabelRange> labels;
+    const std::string list = text + ",";
+    for (std::size_t at = 0; at < list.size();) {
+        const std::size_t comma = list.find(',', at), dash = list.find('-', at + 1);
+        const std::string low = list.substr(at, std::min(comma, dash) - at);
+        const std::string high = dash < comma ? list.substr(dash + 1, comma - dash - 1) : low;
+        float values[2] = {};
+        const bool good = parseReal(low, values[0]) && parseReal(high, values[1]) && values[0] <= values[1];
+        requireOption(good, "labels", text, "numbers and ranges with commas, for example 1,4,10-20");
+        labels.emplace_back(double(values[0]), double(values[1]));
+        at = comma + 1;
+    }
+    return labels;
+}
+
+void readRasterOptions(const Arguments& arguments, ModelOptions& options) {
+    const auto size = [&](const char* name) {
+        return arguments.has(name) ? arguments.real(name, 0, 1e-30, 1e30) : 0;
+    };
+    options.heights.pixelSize = options.volume.pixelSize = size("pixel-size");
+    options.heights.height = size("height");
+    options.heights.base = size("base");
+    const std::string plane = arguments.text("plane", "xy");
+    requireOption(plane == "xy" || plane == "yz" || plane == "zx", "plane", plane, "xy, yz or zx");
+    options.heights.plane = plane == "xy"   ? HeightPlane::XY
+                            : plane == "yz" ? HeightPlane::YZ
+                                            : HeightPlane::ZX;
+    if (arguments.has("threshold")) options.volume.threshold = arguments.real("threshold", 0, -1e30, 1e30);
+    if (arguments.has("labels")) options.volume.labels = parseLabels(arguments.text("labels"));
+    if (arguments.has("threshold") && arguments.has("labels"))
+        throw Error(ErrorCode::InvalidOption, "--threshold and --labels: give one of them");
+}
+
+}  // namespace
+
 ModelOptions Run::modelOptions() const {
     ModelOptions options;
     options.voxelSize = arguments.has("voxel-size") ? arguments.real("voxel-size", 0, 1e-30, 1e30) : 0;
@@ -165,6 +205,7 @@ ModelOptions Run::modelOptions() const {
     if ((open == "shell") != arguments.has("thickness"))
         throw Error(ErrorCode::InvalidOption,
                     "--open shell and --thickness W: give both, the thickness of the shell in world units");
+    readRasterOptions(arguments, options);
     options.grid = arguments.text("grid");
     if (arguments.has("iso")) options.iso = arguments.real("iso", 0, -1e30, 1e30);
     return options;

@@ -1,0 +1,71 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/grid/brick_field.h"
+#include "libvdbsynth/grid/raster.h"
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vdbsynth {
+
+/// A field whose zero level is a surface, negative inside, in no unit; and the domain it was made for. The
+/// field goes some voxels beyond the domain, where the outermost samples go on.
+struct RasterField {
+    BrickField field;
+    IndexBox domain;
+    double voxelSize = 1;     ///< [world]
+    Vec3d origin{0, 0, 0};    ///< [world] of voxel 0,0,0
+    std::string description;  ///< what was decided, one line
+};
+
+inline constexpr float kRasterFieldLimit = 4.f;  ///< largest value of the fields here
+inline constexpr int kRasterFieldMargin = 6;     ///< voxels that they go beyond the domain
+
+/// Where the ground of a height field lies. Columns run along its first axis, rows from bottom to top along
+/// its second, height along the third.
+enum class HeightPlane { XY, YZ, ZX };
+
+struct HeightOptions {
+    double voxelSize = 0;  ///< [world] above 0; 0: the pixel's size, or by resolution
+    int resolution = 0;    ///< voxels along the image's longer side; 0: one a pixel
+    double pixelSize = 0;  ///< [world] above 0; 0: the file's, else 1
+    double height = 0;  ///< [world] above 0, from black to white, or from the lowest to the highest of real
+                        ///< values; 0: a tenth of the image's longer side, real values as they are
+    double base = 0;  ///< [world] above 0, of solid under the lowest place; 0: a twentieth of the longer side
+    HeightPlane plane = HeightPlane::XY;
+};
+
+/// A height field as a slab. The zero level lies on the bilinear surface through the heights at the voxels'
+/// centres. At other voxel sizes heights are averaged (tent filter) or interpolated (Catmull-Rom). Pixels
+/// without data are holes through the slab. Black, or a real height of 0, is 0 along the height's axis.
+/// @param name  begins the messages
+/// @throw Error InvalidOption, BadData (infinite values), EmptyInput (no data), Unusable (no height to tell),
+/// Memory
+/// @par Cost    O(pixels + bricks of the domain)   @par Repeats same bits for any number of threads
+RasterField heightField(const std::string& name, const Raster& raster, const HeightOptions& options = {},
+                        const RunContext& ctx = {});
+
+/// Values from low to high, both counted in.
+using LabelRange = std::pair<double, double>;
+
+struct VolumeOptions {
+    std::optional<double> threshold;  ///< solid where the value is above it
+    std::vector<LabelRange> labels;   ///< solid where the value is one of these
+    double pixelSize = 0;  ///< [world] of the smallest side of a sample's cell; 0: the file's, else 1
+};
+
+/// A volume as a field at its own resolution; cells that are no cubes are resampled (trilinear) to their
+/// smallest side. With a threshold the surface is that of trilinear interpolation. With labels, or for a
+/// volume of only two values (the larger is solid then), the steps between voxels are smoothed under the
+/// constraint that every sample stays on its side [whitaker2000], so volume fractions and thin parts are
+/// kept. Samples without data are outside.
+/// @throw Error InvalidOption (threshold and labels), BadData (infinite values), EmptyInput, Unusable
+/// (neither was given;
+///              no surface at the threshold; no sample has such a label), Memory
+/// @par Cost    O(samples)   @par Repeats same bits for any number of threads
+RasterField volumeField(const std::string& name, const Raster& raster, const VolumeOptions& options = {},
+                        const RunContext& ctx = {});
+
+}  // namespace vdbsynth

@@ -226,4 +226,33 @@ RasterField heightField(const std::string& name, const Raster& given, const Heig
     return result;
 }
 
+HeightImage topHeights(const BrickField& field, HeightPlane plane, const RunContext& ctx) {
+    const IndexBox& domain = field.box();
+    const Axes axes = axesOf(plane);
+    const Index3 size = domain.size();
+    HeightImage image{size[axes.column], size[axes.row], {}};
+    image.heights.assign(std::size_t(image.columns) * std::size_t(image.rows), std::nanf(""));
+    parallelFor(ctx, std::size_t(image.rows), 8, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t row = begin; row < end; ++row)
+            for (int column = 0; column < image.columns; ++column) {
+                Index3 p = domain.min;
+                p[axes.column] += column;
+                p[axes.row] += image.rows - 1 - int(row);  // the first row is the top one
+                float above = -1;
+                for (p[axes.height] = domain.max[axes.height]; p[axes.height] >= domain.min[axes.height];
+                     --p[axes.height]) {
+                    const float here = field.at(p);
+                    if (here < 0) {
+                        const float t = above > 0 ? here / (here - above) : 0.5f;
+                        image.heights[row * std::size_t(image.columns) + std::size_t(column)] =
+                            float(p[axes.height]) + t;
+                        break;
+                    }
+                    above = here;
+                }
+            }
+    });
+    return image;
+}
+
 }  // namespace vdbsynth

@@ -47,6 +47,17 @@ struct HeightOptions {
 RasterField heightField(const std::string& name, const Raster& raster, const HeightOptions& options = {},
                         const RunContext& ctx = {});
 
+/// Heights as an image of whole rows from the top; NaN where a column meets no surface from above.
+struct HeightImage {
+    int columns = 0, rows = 0;
+    std::vector<float> heights;  ///< [rows x columns] voxels above voxel 0 along the height's axis
+};
+
+/// The topmost surface of each column of voxels of a field, as heightField would have it; where the solid
+/// reaches the field's top, half a voxel above that.
+/// @par Cost    O(voxels of the domain that are not in constant bricks)   @par Repeats yes
+HeightImage topHeights(const BrickField& field, HeightPlane plane, const RunContext& ctx = {});
+
 /// Values from low to high, both counted in.
 using LabelRange = std::pair<double, double>;
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <set>
+#include <utility>
 
 namespace vdbsynth {
 
@@ -29,6 +31,47 @@ std::string folderOf(const std::string& path) {
     const std::size_t slash = path.rfind('/');
     if (slash == std::string::npos) return ".";
     return slash == 0 ? "/" : path.substr(0, slash);
+}
+
+bool isKnownExtension(const std::string& extension) {
+    static const std::set<std::string> known{
+        "vdb",  "obj", "ply", "stl", "off", "mesh", "gltf", "glb", "xyz", "pwn", "pcd",   "png",   "jpg",
+        "jpeg", "pgm", "ppm", "pnm", "tif", "tiff", "exr",  "npy", "vti", "nii", "sgems", "gslib", "inr"};
+    return known.count(extension.size() > 3 && extension.compare(extension.size() - 3, 3, ".gz") == 0
+                           ? extension.substr(0, extension.size() - 3)
+                           : extension) > 0;
+}
+
+std::string extensionOfContent(const std::string& start) {
+    static const std::pair<std::string, const char*> beginnings[] = {
+        {" BDV", "vdb"},
+        {"ply", "ply"},
+        {"glTF", "glb"},
+        {"\x89PNG", "png"},
+        {"\xff\xd8\xff", "jpg"},
+        {"II*", "tif"},
+        {"MM", "tif"},
+        {"II+", "tif"},
+        {"\x76\x2f\x31\x01", "exr"},
+        {"\x93NUMPY", "npy"},
+        {"#INRIMAGE", "inr"},
+        {"# .PCD", "pcd"},
+        {"VERSION", "pcd"},
+        {"P2", "pgm"},
+        {"P3", "ppm"},
+        {"P5", "pgm"},
+        {"P6", "ppm"},
+        {"OFF", "off"},
+        {"COFF", "off"},
+        {"NOFF", "off"},
+        {"solid", "stl"},
+        {"MeshVersionFormatted", "mesh"},
+        {"<VTKFile", "vti"},
+        {std::string("\x5c\x01\x00\x00", 4), "nii"}};
+    for (const auto& [bytes, extension] : beginnings)
+        if (start.compare(0, bytes.size(), bytes) == 0) return extension;
+    if (start.compare(0, 5, "<?xml") == 0 && start.find("<VTKFile") != std::string::npos) return "vti";
+    return "";
 }
 
 }  // namespace vdbsynth

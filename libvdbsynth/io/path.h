@@ -12,4 +12,10 @@ std::string fileNameOf(const std::string& path);
 /// Folder of a path, "." if it names none.
 std::string folderOf(const std::string& path);
 
+/// True for an extension in lower case of any kind of file that is read, perhaps with .gz.
+bool isKnownExtension(const std::string& extension);
+/// The extension of the kind of file that begins so, for what tells it by its first bytes (or words); empty
+/// for text that could be several.
+std::string extensionOfContent(const std::string& start);
+
 }  // namespace vdbsynth

@@ -3,14 +3,63 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/path.h"
+#include "libvdbsynth/io/raster_file.h"
 #include "libvdbsynth/vdb/mesh_conversion.h"
+#include "libvdbsynth/vdb/redistance.h"
 
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <optional>
 
 namespace vdbsynth {
 namespace {
+
+bool isHeightPath(const std::string& path) {
+    return extensionOf(path) == "png" || extensionOf(path) == "exr";
+}
+
+// Heights in world units: EXR holds them as they are, PNG black at zero or at the lowest below it, white at
+// the highest or at the height asked for.
+void writeHeights(const LevelSet& model, const std::string& path, const std::string& temporary,
+                  const ModelOutputOptions& options, const RunContext& ctx) {
+    requireMemory(ctx, double(model.domain.volume()) * 8.0 / 512, path, "crop the model");
+    const int axis = options.plane == HeightPlane::XY ? 2 : options.plane == HeightPlane::YZ ? 0 : 1;
+    // The caps at the sides of a recorded domain are no part of the surface.
+    CutFaces cut{};
+    for (std::size_t face = 0; face < 6; ++face) cut[face] = model.domainRecorded && int(face / 2) != axis;
+    const BrickField field = widenBand(*model.grid, model.domain, cut, kHalfWidth, ctx);
+    HeightImage image = topHeights(field, options.plane, ctx);
+    float low = 0, high = 0;
+    std::size_t missing = 0;
+    for (float& height : image.heights) {
+        if (std::isnan(height)) {
+            ++missing;
+            continue;
+        }
+        openvdb::Vec3d place(0.0);
+        place[axis] = double(height) + model.domain.min[axis];
+        height = float(model.grid->indexToWorld(place)[axis]);
+        low = std::min(low, height);
+        high = std::max(high, height);
+    }
+    if (missing == image.heights.size())
+        throw Error(ErrorCode::EmptyInput, path + ": no column of the domain meets a surface");
+    if (missing > 0)
+        message(ctx, MessageLevel::Note,
+                path + ": " + std::to_string(missing) + " of " + std::to_string(image.heights.size()) +
+                    " pixels meet no surface; they are transparent");
+    if (extensionOf(path) == "exr") return writeGreyExr(temporary, image.columns, image.rows, image.heights);
+    if (options.height > 0) high = float(options.height);
+    char text[96];
+    std::snprintf(text, sizeof text, ": black is a height of %.6g, white one of %.6g (world)", double(low),
+                  double(high));
+    message(ctx, MessageLevel::Note, path + text);
+    for (float& height : image.heights) height = high > low ? (height - low) / (high - low) : 0;
+    writeGreyPng(temporary, image.columns, image.rows, image.heights);
+}
 
 void writeOne(const LevelSet& model, const std::string& path, const std::string& temporary,
               const ModelOutputOptions& options, std::optional<Mesh>& mesh, const RunContext& ctx) {
@@ -20,6 +69,7 @@ void writeOne(const LevelSet& model, const std::string& path, const std::string&
         writeVdb(temporary, grids, options.metadata);
         return;
     }
+    if (isHeightPath(path)) return writeHeights(model, path, temporary, options, ctx);
     if (options.points) {
         PointOptions pointOptions;
         pointOptions.spacing = options.spacing;
@@ -41,9 +91,10 @@ void writeOne(const LevelSet& model, const std::string& path, const std::string&
 void requireOutputPaths(const std::vector<std::string>& paths) {
     for (const std::string& path : paths) {
         MeshFormat format{};
-        if (extensionOf(path) != "vdb" && !writableMeshFormatOf(path, format))
-            throw Error(ErrorCode::InvalidOption,
-                        path + ": unknown extension; outputs are .vdb, .obj, .ply, .stl or .off");
+        if (extensionOf(path) != "vdb" && !isHeightPath(path) && !writableMeshFormatOf(path, format))
+            throw Error(ErrorCode::InvalidOption, path +
+                                                      ": unknown extension; outputs are .vdb, .obj, .ply, "
+                                                      ".stl, .off, or .png and .exr for heights");
     }
 }
 

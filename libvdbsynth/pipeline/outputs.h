@@ -1,5 +1,6 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/grid/raster_field.h"
 #include "libvdbsynth/io/output_set.h"
 #include "libvdbsynth/vdb/level_set.h"
 #include "libvdbsynth/vdb/vdb_file.h"
@@ -10,17 +11,20 @@
 namespace vdbsynth {
 
 struct ModelOutputOptions {
-    bool points = false;              ///< .ply holds points with normals instead of a mesh
-    double adaptivity = 0;            ///< 0..1, for meshes
-    double spacing = 1;               ///< [voxels] between points, 0.25..100
-    std::vector<GridPtr> extraGrids;  ///< written beside `surface` into .vdb outputs
-    VdbMetadata metadata;             ///< of .vdb outputs
+    bool points = false;                  ///< .ply holds points with normals instead of a mesh
+    double adaptivity = 0;                ///< 0..1, for meshes
+    double spacing = 1;                   ///< [voxels] between points, 0.25..100
+    HeightPlane plane = HeightPlane::XY;  ///< of height images
+    double height = 0;                    ///< [world] that is white in a .png; 0: the highest place
+    std::vector<GridPtr> extraGrids;      ///< written beside `surface` into .vdb outputs
+    VdbMetadata metadata;                 ///< of .vdb outputs
 };
 
 /// @throw Error InvalidOption if a path's extension is none that writeModel writes
 void requireOutputPaths(const std::vector<std::string>& paths);
 
-/// Writes one model to every path, kind by extension: .vdb, .obj, .ply, .stl, .off. The mesh is made once.
+/// Writes one model to every path, kind by extension: .vdb, .obj, .ply, .stl, .off; .png (16 bits) and
+/// .exr hold the height of the topmost surface over the domain, a pixel a voxel. The mesh is made once.
 /// Nothing is renamed into place; `outputs.commit()` does that.
 /// @throw Error InvalidOption, Io, EmptyInput (no surface to mesh)
 /// @par Repeats byte for byte for equal models and metadata

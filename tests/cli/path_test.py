@@ -6,6 +6,102 @@ import unittest
 from support import PROGRAM, SOURCE, CliTest, sample
 
 
+def npy(values, shape, kind="|u1"):
+    header = f"{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}".ljust(118).encode()
+    return b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header + bytes(values)
+
+
+class Doors(CliTest):
+    def model(self, name):
+        return json.loads(self.ok("info", name, "--json").stdout)["model"]
+
+    def test_an_image_becomes_a_slab_and_an_image_again(self):
+        pixels = bytes((x * 5 + y * 3) % 256 for y in range(24) for x in range(32))
+        self.write("a.pgm", b"P5 32 24 255\n" + pixels)
+        result = self.ok("convert", "a.pgm", "-o", "a.vdb", "-o", "a.png", "-o", "a.exr", "--height", 20, "--base", 3.5)
+        self.assertIn("white one of 20 (world)", result.stderr)
+        model = self.model("a.vdb")
+        self.assertTrue(model["valid"], model)
+        self.assertTrue(model["domain_recorded"])
+        self.assertTrue(model["domain"].startswith("0,0,-3,31,23,"), model)
+        self.assertEqual(json.loads(self.ok("info", "a.png", "--json").stdout)["white"], 65535)
+        self.ok("convert", "a.exr", "-o", "b.exr", "--base", 3.5)
+        again = self.model_heights("a.exr"), self.model_heights("b.exr")
+        self.assertLess(abs(again[0] - again[1]), 0.2)  # the highest pixel is at an edge, where the cap is near
+        self.ok("convert", "a.pgm", "-o", "c.vdb", "--plane", "zx", "--pixel-size", 2)
+        self.assertTrue(self.model("c.vdb")["domain"].endswith(",31"))
+
+    def model_heights(self, name):
+        return json.loads(self.ok("info", name, "--json").stdout)["maximum"]
+
+    def test_volumes_need_to_know_what_is_solid(self):
+        values = [z * 10 for z in range(12) for _ in range(100)]
+        self.write("v.npy", npy(values, "(12, 10, 10)"))
+        self.fails(1, "v.npy: say what of it is solid with --threshold VALUE or --labels LIST; its values run from 0 to 110",
+                   "convert", "v.npy", "-o", "v.vdb")
+        self.ok("convert", "v.npy", "-o", "v.vdb", "--threshold", 55)
+        self.assertEqual(self.model("v.vdb")["solid_voxels"], 600)
+        self.ok("convert", "v.npy", "-o", "v.vdb", "--labels", "0,40-60")
+        self.assertEqual(self.model("v.vdb")["solid_voxels"], 400)
+        self.fails(2, "--labels", "convert", "v.npy", "-o", "v.vdb", "--labels", "5-1")
+        self.fails(2, "give one of them", "convert", "v.npy", "-o", "v.vdb", "--labels", "5", "--threshold", 5)
+        self.fails(1, "values of v.npy run from 0 to 110", "convert", "v.npy", "-o", "v.vdb", "--threshold", 500)
+        self.write("flat.npy", npy([0, 1, 1, 0] * 16, "(8, 8)"))
+        self.ok("convert", "flat.npy", "-o", "f.vdb", "--as", "volume")
+        self.assertEqual(self.model("f.vdb")["domain"], "0,0,0,7,7,0")
+
+    def test_every_image_and_volume_of_the_samples(self):
+        for name, options in (("textures/embark-1.jpg", []), ("textures/embark-4.png", []), ("textures/metal.pgm", []), ("terrain/elev.tif", []),
+                              ("volumes/heart.vti", ["--threshold", 60]), ("volumes/skull_2.9.inr", ["--threshold", 2.9]),
+                              ("volumes/aal.nii.gz", ["--labels", "1-20"]), ("volumes/TI1_3D.SGEMS", []), ("volumes/blobs_3d_fiji_skeleton.tif", [])):
+            with self.subTest(name):
+                self.ok("convert", sample(name), "-o", "a.vdb", *options)
+                model = self.model("a.vdb")
+                self.assertEqual(model["band_gaps"], 0)
+                self.assertGreater(model["solid_voxels"], 100)
+
+
+class StandardStreams(CliTest):
+    def piped(self, content, *words):
+        return subprocess.run([PROGRAM, *map(str, words)], input=content, capture_output=True, cwd=self.folder, timeout=240)
+
+    def test_in_and_out(self):
+        self.ok("make", "grid", "g.vdb", "--resolution", 24)
+        self.ok("convert", "g.vdb", "-o", "g.obj")
+        for words in (["-.obj"], ["-", "--as", "obj"]):
+            result = self.piped(self.read("g.obj"), "convert", *words, "-o", "-.ply")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertTrue(result.stdout.startswith(b"ply"))
+            self.assertIn(b"-.obj: voxel size" if len(words) == 1 else b"-: voxel size", result.stderr)
+        made = self.piped(b"", "make", "grid", "-.vdb", "--resolution", 24)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assertEqual(made.stdout, self.read("g.vdb"))
+        told = self.piped(made.stdout, "info", "-", "--json")
+        self.assertTrue(json.loads(told.stdout)["model"]["valid"])
+        self.ok("convert", "g.obj", "-o", "a.vdb", "--resolution", 30)
+        self.piped(self.read("g.obj"), "convert", "-.obj", "-o", "b.vdb", "--resolution", 30)
+        names = [json.loads(self.ok("info", f, "--json").stdout)["metadata"]["vdbsynth:inputs"] for f in ("a.vdb", "b.vdb")]
+        self.assertEqual(json.loads(names[0])[0]["hash"], json.loads(names[1])[0]["hash"])
+        self.assertEqual(json.loads(names[1])[0]["name"], "-.obj")
+
+    def test_errors(self):
+        for content, words, code, says in (
+                (b"", ["convert", "-.obj", "-o", "a.vdb"], 3, b"-.obj: standard input is empty"),
+                (b"v 0 0 0", ["convert", "-", "-o", "a.vdb"], 2, b"does not tell what kind of file it is"),
+                (b"plx", ["convert", "-.ply", "-o", "a.vdb"], 3, b"-.ply:"),
+                (b"x", ["convert", "-.ply", "-o", "-"], 2, b"with -.EXT"),
+                (b"x", ["convert", "-.ply", "-.obj", "-o", "a.vdb"], 2, b"one input only")):
+            result = self.piped(content, *words)
+            self.assertEqual(result.returncode, code, result.stderr)
+            self.assertIn(says, result.stderr)
+            self.assertEqual(result.stdout, b"")
+        self.ok("make", "grid", "g.vdb", "--resolution", 24)
+        process = subprocess.Popen([PROGRAM, "convert", "g.vdb", "-o", "-.ply"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=self.folder)
+        process.stdout.close()
+        self.assertIn(b"standard output cannot be written", process.communicate()[1])
+        self.assertEqual(process.returncode, 3)
+
+
 class MainPath(CliTest):
     def test_make_synth_render(self):
         self.ok("make", "grid", "grid.vdb", "--resolution", 40)

@@ -5,6 +5,7 @@
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "tools/vdb_synth/option_set.h"
 #include "tools/vdb_synth/progress.h"
+#include "tools/vdb_synth/streams.h"
 #include "tools/vdb_synth/supervisor.h"
 
 #include <nlohmann/json_fwd.hpp>
@@ -19,10 +20,13 @@ struct Command;
 
 /// One run of a command: its arguments, context, outputs and report. Made by main, used by the command.
 class Run {
+    std::unique_ptr<Streams> mStreams;  // first: `arguments` comes out of it
+
 public:
     Run(const Command& command, Arguments arguments, const SupervisorLine& line);
     ~Run();
 
+    /// As given, with files in the place of standard input and output.
     const Arguments arguments;
     RunContext context;
 
@@ -33,6 +37,8 @@ public:
     /// @throw Error InvalidOption unless low <= number of inputs <= high
     void requireInputs(std::size_t low, std::size_t high) const;
     OutputSet& outputs() { return *mOutputs; }
+    /// A message with the outputs' and streams' names where it has those of temporaries.
+    std::string withoutTemporaries(const std::string& text) const;
 
     /// Options of loadModel from the common options.
     ModelOptions modelOptions() const;

@@ -111,7 +111,7 @@ int execute(const Command& command, const Arguments& arguments, const Supervisor
             command.run(run);
         } catch (const Error& error) {
             // Errors speak of outputs, not of their temporary names.
-            throw Error(error.code(), run.outputs().withoutTemporaries(error.what()));
+            throw Error(error.code(), run.withoutTemporaries(error.what()));
         }
         if (std::fflush(stdout) != 0) throw Error(ErrorCode::Io, "standard output cannot be written");
         return 0;

@@ -85,6 +85,23 @@ std::vector<std::string> bindOptionalValues(const std::vector<Option>& options,
     return bound;
 }
 
+// Boost takes "-.obj", the name of a stream, for an option: it goes by with another first letter.
+constexpr char kStreamMark = '\x01';
+
+std::vector<std::string> hideStreams(std::vector<std::string> words) {
+    for (std::string& word : words)
+        if (word.size() > 2 && word.compare(0, 2, "-.") == 0 &&
+            std::isalpha(static_cast<unsigned char>(word[2])))
+            word[0] = kStreamMark;
+    return words;
+}
+
+std::vector<std::string> shownStreams(std::vector<std::string> words) {
+    for (std::string& word : words)
+        if (!word.empty() && word[0] == kStreamMark) word[0] = '-';
+    return words;
+}
+
 std::string dashed(std::string name) {
     while (!name.empty() && name[0] == '-') name.erase(0, 1);
     return name.substr(0, name.find('='));
@@ -199,12 +216,14 @@ Arguments parseArguments(const std::vector<Option>& options, const std::vector<s
     const int flags = (style::unix_style | style::allow_long_disguise) & ~style::allow_guessing;
     Arguments arguments;
     try {
-        const po::parsed_options parsed = po::command_line_parser(bindOptionalValues(options, words))
-                                              .options(description)
-                                              .positional(positional)
-                                              .style(flags)
-                                              .run();
-        for (const po::option& given : parsed.options) {
+        const po::parsed_options parsed =
+            po::command_line_parser(hideStreams(bindOptionalValues(options, words)))
+                .options(description)
+                .positional(positional)
+                .style(flags)
+                .run();
+        for (po::option given : parsed.options) {
+            given.value = shownStreams(given.value);
             if (given.string_key == "inputs") {
                 arguments.inputs.insert(arguments.inputs.end(), given.value.begin(), given.value.end());
                 continue;

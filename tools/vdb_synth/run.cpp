@@ -94,7 +94,9 @@ struct Run::Impl {
 };
 
 Run::Run(const Command& command, Arguments given, const SupervisorLine& line)
-    : arguments(std::move(given)), mImpl(new Impl{command, line, ProgressLog(progressStyle(arguments))}) {
+    : mStreams(new Streams([line](const std::string& path) { line.temporary(path); })),
+      arguments(mStreams->spooled(std::move(given), command.name == "make")),
+      mImpl(new Impl{command, line, ProgressLog(progressStyle(arguments))}) {
     Impl& impl = *mImpl;
     impl.quiet = arguments.has("quiet");
     impl.verbose = arguments.has("verbose");
@@ -113,14 +115,18 @@ Run::Run(const Command& command, Arguments given, const SupervisorLine& line)
         impl.reading = progress.reading;
         impl.progress.update(progress);
     };
-    context.onMessage = [&impl](MessageLevel level, const std::string& text) {
+    context.onMessage = [this, &impl](MessageLevel level, const std::string& text) {
         if (level == MessageLevel::Detail && !impl.verbose) return;
         if (level != MessageLevel::Warning && impl.quiet) return;
         impl.progress.clear();
         std::fprintf(stderr, "vdb_synth: %s%s\n", level == MessageLevel::Warning ? "warning: " : "",
-                     text.c_str());
+                     withoutTemporaries(text).c_str());
     };
     mOutputs = std::make_unique<OutputSet>([&impl](const std::string& path) { impl.line.temporary(path); });
+}
+
+std::string Run::withoutTemporaries(const std::string& text) const {
+    return mStreams->named(mOutputs ? mOutputs->withoutTemporaries(text) : text);
 }
 
 Run::~Run() {
@@ -218,7 +224,7 @@ void Run::reserveOutputs() {
 }
 
 void Run::noteInput(const std::string& path) {
-    mImpl->inputs.emplace_back(fileNameOf(path), fileHash(path));
+    mImpl->inputs.emplace_back(fileNameOf(mStreams->named(path)), fileHash(path));
 }
 
 LevelSet Run::load(const std::string& path) {
@@ -300,6 +306,7 @@ void Run::finish() {
     throwIfCancelled(context);
     mOutputs->commit();
     impl.progress.finish();
+    mStreams->release();
 }
 
 void printLine(const std::string& text) {

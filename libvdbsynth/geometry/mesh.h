@@ -1,4 +1,5 @@
 #pragma once
+#include "libvdbsynth/geometry/attribute.h"
 #include "libvdbsynth/math/vec3.h"
 
 #include <array>
@@ -16,6 +17,7 @@ struct Mesh {
     std::vector<Vec3f> points;        ///< [vertices] world space
     std::vector<Triangle> triangles;  ///< [triangles x 3] indices into points
     std::vector<Quad> quads;          ///< [quads x 4] indices into points
+    Attributes attributes;            ///< of the vertices
 
     std::size_t faceCount() const { return triangles.size() + quads.size(); }
 };

@@ -19,12 +19,15 @@ constexpr std::size_t kPlane = 16;  // neighbours that make a plane
 // Keeps the points where `keep` is set.
 void keepOnly(PointCloud& cloud, const std::vector<char>& keep) {
     std::size_t kept = 0;
+    std::vector<std::size_t> rows;
     for (std::size_t i = 0; i < keep.size(); ++i) {
         if (!keep[i]) continue;
+        rows.push_back(i);
         cloud.points[kept] = cloud.points[i];
         if (!cloud.normals.empty()) cloud.normals[kept] = cloud.normals[i];
         ++kept;
     }
+    if (kept < keep.size()) cloud.attributes = selectRows(cloud.attributes, rows);
     cloud.points.resize(kept);
     if (!cloud.normals.empty()) cloud.normals.resize(kept);
 }

@@ -1,5 +1,6 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/geometry/attribute.h"
 #include "libvdbsynth/math/vec3.h"
 
 #include <cstddef>
@@ -11,6 +12,7 @@ namespace vdbsynth {
 struct PointCloud {
     std::vector<Vec3f> points;   ///< [points] world space
     std::vector<Vec3f> normals;  ///< [points], or empty
+    Attributes attributes;       ///< of the points
 };
 
 /// Distance [world] from every point to its neighbours: the root mean square over the 6 nearest, over root 2,

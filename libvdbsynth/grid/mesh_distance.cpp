@@ -15,11 +15,10 @@ namespace {
 constexpr int kSide = BrickField::kSide;
 constexpr int kPadded = kSide + 2;
 constexpr float kFar = std::numeric_limits<float>::max();
-constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
 struct Nearest {
     float distance = kFar;
-    std::uint32_t face = kNone;
+    std::uint32_t face = kNoFace;
 };
 
 // What a triangle lies in: a disc, with which most triangles are refused at a fraction of their distance's
@@ -115,7 +114,7 @@ public:
         collectBricks();
     }
 
-    BrickField run() {
+    void propagate() {
         seed();
         const int rounds = int(std::ceil(mHalfWidth));
         mNext.resize(mNow.size());
@@ -127,6 +126,9 @@ public:
             std::swap(mNow, mNext);
             std::swap(mFresh, mNextFresh);
         }
+    }
+
+    BrickField distances() const {
         return BrickField::generate(mBox, mContext, [&](const IndexBox& brick, float* samples) {
             const std::int32_t slot = slotOf(brick.min);
             for (int i = 0; i < BrickField::kSamples; ++i)
@@ -135,6 +137,19 @@ public:
                         ? mHalfWidth
                         : std::min(mHalfWidth,
                                    mNow[std::size_t(slot) * BrickField::kSamples + std::size_t(i)].distance);
+        });
+    }
+
+    void forFaces(const std::function<void(const Index3&, const std::uint32_t*)>& visit) const {
+        parallelFor(mContext, mOrigins.size(), 8, [&](std::size_t begin, std::size_t end) {
+            std::uint32_t faces[BrickField::kSamples];
+            for (std::size_t slot = begin; slot < end; ++slot) {
+                for (std::size_t i = 0; i < BrickField::kSamples; ++i) {
+                    const Nearest& nearest = mNow[slot * BrickField::kSamples + i];
+                    faces[i] = nearest.distance <= mHalfWidth ? nearest.face : kNoFace;
+                }
+                visit(mOrigins[slot], faces);
+            }
         });
     }
 
@@ -276,7 +291,7 @@ private:
         for (const Step& step : neighbourSteps()) {
             const Nearest& other = around[step.offset];
             // A face cannot be nearer here than its distance there less the step.
-            if (other.face == kNone || other.face == best.face || other.face == tried ||
+            if (other.face == kNoFace || other.face == best.face || other.face == tried ||
                 other.distance - step.length > std::min(best.distance, mHalfWidth))
                 continue;
             tried = other.face;
@@ -307,7 +322,16 @@ private:
 }  // namespace
 
 BrickField meshDistance(const Mesh& mesh, const IndexBox& box, float halfWidth, const RunContext& ctx) {
-    return Propagation(mesh, box, halfWidth, ctx).run();
+    Propagation propagation(mesh, box, halfWidth, ctx);
+    propagation.propagate();
+    return propagation.distances();
+}
+
+void forNearestFaces(const Mesh& mesh, const IndexBox& box, float halfWidth, const RunContext& ctx,
+                     const std::function<void(const Index3&, const std::uint32_t*)>& visit) {
+    Propagation propagation(mesh, box, halfWidth, ctx);
+    propagation.propagate();
+    propagation.forFaces(visit);
 }
 
 }  // namespace vdbsynth

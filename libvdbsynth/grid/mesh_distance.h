@@ -3,6 +3,9 @@
 #include "libvdbsynth/geometry/mesh.h"
 #include "libvdbsynth/grid/brick_field.h"
 
+#include <cstdint>
+#include <functional>
+
 namespace vdbsynth {
 
 /// Unsigned distance [voxels] to a mesh of faces of about a voxel's size, over a box of voxels, clamped to
@@ -16,5 +19,16 @@ namespace vdbsynth {
 /// @par Cost         O(faces + voxels in bricks near them * halfWidth)
 /// @par Repeats      same bits for any number of threads
 BrickField meshDistance(const Mesh& mesh, const IndexBox& box, float halfWidth, const RunContext& ctx = {});
+
+/// No face is within the band.
+inline constexpr std::uint32_t kNoFace = 0xffffffffu;
+
+/// Calls visit(corner, faces) for every cube of 8 voxels of the box that the band touches, from many threads:
+/// for each voxel, x slowest, the nearest face, an index into triangulated(mesh) (geometry/mesh.h), or
+/// kNoFace. Of faces equally near the first. Corners are box.min plus multiples of 8; a cube may reach over
+/// the box.
+/// @par Cost    as meshDistance   @par Repeats yes
+void forNearestFaces(const Mesh& mesh, const IndexBox& box, float halfWidth, const RunContext& ctx,
+                     const std::function<void(const Index3& corner, const std::uint32_t* faces)>& visit);
 
 }  // namespace vdbsynth

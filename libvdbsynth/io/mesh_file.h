@@ -8,30 +8,35 @@
 namespace vdbsynth {
 
 /// Kinds of mesh file, by extension.
-enum class MeshFormat { Obj, Ply, Stl, Off, Medit };
+enum class MeshFormat { Obj, Ply, Stl, Off, Medit, Gltf, Glb };
 
-/// True, with the format, if the path ends in .obj, .ply, .stl, .off or .mesh (MEDIT), any case; for a path
-/// to read also with .gz after that.
+/// True, with the format, if the path ends in .obj, .ply, .stl, .off, .gltf, .glb or .mesh (MEDIT), any case;
+/// for a path to read also with .gz after that.
 bool meshFormatOf(const std::string& path, MeshFormat& format);
 /// The formats that writeMesh writes: all but MEDIT, never .gz.
 bool writableMeshFormatOf(const std::string& path, MeshFormat& format);
 
 /// Reads a triangle or polygon mesh. Strict: counts are checked against the file's size before anything
 /// is allocated, indices against the vertices, coordinates for finiteness. STL corners with the same bits
-/// are welded. Polygons of more than four corners become fans; texture coordinates, colours and unknown
-/// properties are passed over.
+/// are welded. Polygons of more than four corners become fans.
+/// Attributes of vertices: any scalar property of ply (see groupColumns), colours of obj ("v x y z r g b")
+/// and off (COFF), texture coordinates of obj (a vertex that has several, at a seam, is there once for each),
+/// colours, texture coordinates and custom attributes of glTF. Of glTF all meshes of the scene are read, with
+/// their nodes' transforms; buffers may be files beside it; sparse and quantised data is read, Draco and
+/// meshopt compression are errors that say so.
 /// @throw Error  Io (missing, a directory, not readable), BadData (truncated, corrupt, an index out of
 ///               range, NaN or infinite coordinates), EmptyInput (no faces)
 /// @par Cost     O(file size) time and memory    @par Repeats yes
 Mesh readMesh(const std::string& path, const RunContext& ctx = {});
 
-/// Writes a mesh: obj text, ply and stl binary little-endian, off text. Shortest decimals that read
-/// back to the same floats.
+/// Writes a mesh: obj text, ply and stl binary little-endian, off text, glTF with normals. Shortest decimals
+/// that read back to the same floats. Attributes: ply and glTF all of them (ply colours as 8 bits where they
+/// are within 0..1), obj and off colours, stl none.
 /// @param path  the file to write (see io/output_set.h for writes that cannot harm an old file)
 /// @throw Error Io (cannot be created, disk full)
 void writeMesh(const std::string& path, MeshFormat format, const Mesh& mesh);
 
-/// Writes points with normals as binary ply (float x y z nx ny nz).
+/// Writes points with normals and attributes as binary ply (float x y z nx ny nz ...).
 /// @throw Error Io
 void writePointsPly(const std::string& path, const PointCloud& cloud);
 

@@ -7,15 +7,20 @@
 
 #include <tiny_obj_loader.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <sstream>
+#include <utility>
 
 namespace vdbsynth {
 namespace {
 
-std::vector<Vec3f> readVertexLines(const std::string& path, const std::string& content) {
-    std::vector<Vec3f> points;
+// Vertices with the colours that some programs write behind them: on every line "v x y z r g b", or none
+// counts.
+void readVertexLines(const std::string& path, const std::string& content, Mesh& mesh) {
     TextScanner scanner(path, content);
+    std::vector<AttributeColumn> colour{{"red", 0, {}}, {"green", 0, {}}, {"blue", 0, {}}};
     while (!scanner.atEnd()) {
         if (scanner.word() == "v") {
             Vec3f p;
@@ -26,12 +31,64 @@ std::vector<Vec3f> readVertexLines(const std::string& path, const std::string& c
                     scanner.fail("\"" + std::string(number.substr(0, 40)) + "\" is not a number");
                 if (!std::isfinite(p[axis])) scanner.fail("a coordinate is not a finite number");
             }
-            points.push_back(p);
+            mesh.points.push_back(p);
+            for (AttributeColumn& column : colour) {
+                float value = 0;
+                if (parseReal(scanner.wordOnLine(), value)) column.values.push_back(value);
+            }
         }
         scanner.skipLine();
     }
-    return points;
+    const bool coloured = !mesh.points.empty() && colour[2].values.size() == mesh.points.size();
+    if (coloured) mesh.attributes = groupColumns(std::move(colour));
 }
+
+// Gives every vertex its texture coordinates; a vertex that has several, at a seam, is there once for each.
+class SeamSplitter {
+public:
+    SeamSplitter(Mesh& mesh, const std::vector<tinyobj::real_t>& texture) : mMesh(mesh), mTexture(texture) {
+        mOf.assign(mesh.points.size(), kUnset);
+    }
+    std::uint32_t vertex(int point, int texture) {
+        const std::size_t p = std::size_t(point);
+        if (p >= mOf.size() || texture < 0 || std::size_t(texture) * 2 + 1 >= mTexture.size())
+            return std::uint32_t(point);
+        if (mOf[p] == kUnset) mOf[p] = texture;
+        if (mOf[p] == texture) return std::uint32_t(point);
+        const auto [at, fresh] = mSplit.try_emplace({point, texture}, std::uint32_t(mMesh.points.size()));
+        if (fresh) {
+            mMesh.points.push_back(Vec3f(mMesh.points[p]));
+            mSource.push_back({point, texture});
+        }
+        return at->second;
+    }
+    // Adds the coordinates, and the attributes of the vertices that were split.
+    void finish() {
+        std::vector<std::size_t> rows;
+        for (std::size_t i = 0; i < mOf.size(); ++i) rows.push_back(i);
+        for (const auto& [point, texture] : mSource) {
+            rows.push_back(std::size_t(point));
+            mOf.push_back(texture);
+        }
+        if (!mSource.empty()) mMesh.attributes = selectRows(mMesh.attributes, rows);
+        Attribute uv{"uv", 2, {}};
+        for (int texture : mOf)
+            for (std::size_t k = 0; k < 2; ++k)
+                uv.values.push_back(texture < 0 ? 0.f : float(mTexture[std::size_t(texture) * 2 + k]));
+        const bool any = std::any_of(mOf.begin(), mOf.end(), [](int texture) { return texture >= 0; });
+        const bool finite =
+            std::all_of(uv.values.begin(), uv.values.end(), [](float v) { return std::isfinite(v); });
+        if (any && finite) mMesh.attributes.push_back(std::move(uv));
+    }
+
+private:
+    static constexpr int kUnset = -1;
+    Mesh& mMesh;
+    const std::vector<tinyobj::real_t>& mTexture;
+    std::vector<int> mOf;  // texture coordinates of each point
+    std::map<std::pair<int, int>, std::uint32_t> mSplit;
+    std::vector<std::pair<int, int>> mSource;
+};
 
 // A backslash at a line's end joins it to the next; the line end moves behind the whole, so that lines below
 // keep their numbers.
@@ -61,7 +118,7 @@ std::string withJoinedLines(const std::string& text) {
 Mesh readObj(const std::string& path, const std::string& text) {
     const std::string content = withJoinedLines(text);
     Mesh mesh;
-    mesh.points = readVertexLines(path, content);
+    readVertexLines(path, content, mesh);
     tinyobj::attrib_t attributes;
     std::vector<tinyobj::shape_t> shapes;
     std::vector<tinyobj::material_t> materials;
@@ -73,17 +130,20 @@ Mesh readObj(const std::string& path, const std::string& text) {
         problem = problem.substr(0, problem.find('\n'));
         throw Error(ErrorCode::BadData, path + ": " + (problem.empty() ? "not a valid OBJ file" : problem));
     }
+    SeamSplitter splitter(mesh, attributes.texcoords);
     std::vector<std::uint32_t> corners;
     for (const tinyobj::shape_t& shape : shapes) {
         std::size_t at = 0;
         for (const auto count : shape.mesh.num_face_vertices) {
             corners.clear();
             for (std::size_t c = 0; c < std::size_t(count); ++c)
-                corners.push_back(std::uint32_t(shape.mesh.indices[at + c].vertex_index));
+                corners.push_back(splitter.vertex(shape.mesh.indices[at + c].vertex_index,
+                                                  shape.mesh.indices[at + c].texcoord_index));
             at += std::size_t(count);
             appendPolygon(mesh, corners.data(), corners.size());
         }
     }
+    splitter.finish();
     return mesh;
 }
 

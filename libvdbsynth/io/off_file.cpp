@@ -4,6 +4,18 @@
 #include "libvdbsynth/io/text_scanner.h"
 
 namespace vdbsynth {
+namespace {
+
+// One number of a colour; `white` becomes 1 when it is no whole number.
+void readColour(TextScanner& scanner, AttributeColumn& column) {
+    const std::string_view word = scanner.wordOnLine();
+    float value = 0;
+    if (!parseReal(word, value)) return;
+    if (word.find('.') != std::string_view::npos) column.white = 1;
+    column.values.push_back(value);
+}
+
+}  // namespace
 
 Mesh readOff(const std::string& path, const std::string& content) {
     TextScanner scanner(path, content);
@@ -26,6 +38,10 @@ Mesh readOff(const std::string& path, const std::string& content) {
         throw Error(ErrorCode::BadData, path + ": the header claims " + std::to_string(vertices) +
                                             " vertices and " + std::to_string(faces) +
                                             " faces, more than the file can hold");
+    const bool normals = header.find('N') != std::string_view::npos,
+               colours = header.find('C') != std::string_view::npos;
+    std::vector<AttributeColumn> colour;
+    if (colours) colour = {{"red", 0, {}}, {"green", 0, {}}, {"blue", 0, {}}};
     Mesh mesh;
     mesh.points.reserve(std::size_t(vertices));
     for (std::int64_t i = 0; i < vertices; ++i) {
@@ -34,7 +50,14 @@ Mesh readOff(const std::string& path, const std::string& content) {
         p.y = scanner.real();
         p.z = scanner.real();
         mesh.points.push_back(p);
-        scanner.skipLine();  // normals, colours, texture coordinates
+        for (int k = 0; k < (normals ? 3 : 0); ++k) scanner.wordOnLine();
+        for (std::size_t k = 0; k < colour.size(); ++k) readColour(scanner, colour[k]);
+        scanner.skipLine();  // opacity, texture coordinates
+    }
+    if (colours && vertices > 0 && colour[2].values.size() == mesh.points.size()) {
+        // Whole numbers run to 255, even where none is over 1.
+        for (AttributeColumn& column : colour) column.white = column.white == 1 ? 0 : 255;
+        mesh.attributes = groupColumns(std::move(colour));
     }
     std::vector<std::uint32_t> corners;
     for (std::int64_t i = 0; i < faces; ++i) {

@@ -3,7 +3,6 @@
 #include "libvdbsynth/io/point_readers.h"
 #include "libvdbsynth/io/text_scanner.h"
 
-#include <array>
 #include <cstring>
 #include <limits>
 #include <vector>
@@ -154,22 +153,115 @@ Layout binaryLayout(const std::string& path, const std::string& content, const H
     return {unpacked, true};
 }
 
-void readAscii(const std::string& path, const std::string& content, const Header& header,
-               const std::array<int, 6>& wanted, std::vector<std::array<float, 6>>& rows) {
+// The numbers of a row that are wanted, in the order x y z, normal, then one column for each other field of
+// one value; a packed colour has three columns.
+struct Row {
+    std::vector<std::size_t> fields;  // the field of each slot
+    std::vector<AttributeColumn> columns;
+    std::size_t colour = 0;  // slot of the packed colour, 0 if there is none
+    bool normals = false;
+};
+
+Row rowOf(const std::string& path, const Header& header) {
+    static const char* const names[6] = {"x", "y", "z", "normal_x", "normal_y", "normal_z"};
+    Row row;
+    std::vector<char> taken(header.fields.size(), 0);
+    const auto find = [&](const char* name) {
+        for (std::size_t f = 0; f < header.fields.size(); ++f)
+            if (!taken[f] && header.fields[f].name == name && header.fields[f].count > 0) return f;
+        return header.fields.size();
+    };
+    for (std::size_t k = 0; k < 6; ++k) {
+        const std::size_t f = find(names[k]);
+        if (f == header.fields.size() && k < 3)
+            throw Error(ErrorCode::BadData, path + ": its fields have no x, y and z");
+        if (f == header.fields.size()) break;
+        taken[f] = 1;
+        row.fields.push_back(f);
+    }
+    row.normals = row.fields.size() == 6;
+    row.fields.resize(row.normals ? 6 : 3);
+    for (std::size_t f = 0; f < header.fields.size(); ++f) {
+        const Field& field = header.fields[f];
+        if (taken[f] || field.count != 1 || field.name == "_" || field.name.empty()) continue;
+        const bool packed = (field.name == "rgb" || field.name == "rgba") && field.size == 4;
+        if (packed && row.colour > 0) continue;
+        if (packed) {
+            row.colour = row.fields.size();
+            for (const char* name : {"red", "green", "blue"}) row.columns.push_back({name, 255, {}});
+        } else {
+            row.columns.push_back({field.name, 0, {}});
+        }
+        row.fields.push_back(f);
+    }
+    return row;
+}
+
+// A colour in the bits of a number: 0x00RRGGBB, written as a float or as a whole number.
+void appendColour(double value, bool isFloat, AttributeColumn* columns) {
+    std::uint32_t bits = 0;
+    const float number = float(value);
+    if (isFloat)
+        std::memcpy(&bits, &number, 4);
+    else if (value >= -2147483648.0 && value < 4294967296.0)
+        bits = std::uint32_t(std::int64_t(value));
+    for (int c = 0; c < 3; ++c) columns[c].values.push_back(float(bits >> (16 - 8 * c) & 255));
+}
+
+// Takes the numbers of one point.
+void appendPoint(const Header& header, Row& row, const std::vector<double>& numbers, PointCloud& cloud) {
+    const auto vector = [&](std::size_t at) {
+        return Vec3f{float(numbers[at]), float(numbers[at + 1]), float(numbers[at + 2])};
+    };
+    cloud.points.push_back(vector(0));
+    if (row.normals) cloud.normals.push_back(vector(3));
+    std::size_t column = 0;
+    for (std::size_t slot = row.normals ? 6 : 3; slot < row.fields.size(); ++slot) {
+        if (slot == row.colour) {
+            appendColour(numbers[slot], header.fields[row.fields[slot]].type == 'F', &row.columns[column]);
+            column += 3;
+        } else {
+            row.columns[column++].values.push_back(float(numbers[slot]));
+        }
+    }
+}
+
+void readAscii(const std::string& path, const std::string& content, const Header& header, Row& row,
+               PointCloud& cloud) {
     TextScanner scanner(path, content, '\0', header.bytes);
     if (std::uint64_t(header.points) > (content.size() - header.bytes) / 2 + 1)
         scanner.fail("the header claims more points than the file holds");
+    std::vector<int> slotOf(header.fields.size(), -1);
+    for (std::size_t slot = 0; slot < row.fields.size(); ++slot) slotOf[row.fields[slot]] = int(slot);
+    std::vector<double> numbers(row.fields.size());
     for (std::int64_t p = 0; p < header.points; ++p) {
-        std::array<float, 6> row{};
         for (std::size_t f = 0; f < header.fields.size(); ++f)
             for (std::int64_t c = 0; c < header.fields[f].count; ++c) {
                 const std::string_view word = scanner.word();
                 if (word.empty()) scanner.fail("the file is truncated");
-                for (std::size_t k = 0; k < 6; ++k)
-                    if (wanted[k] == int(f) && c == 0 && !parseReal(word, row[k]))
-                        scanner.fail("\"" + std::string(word.substr(0, 40)) + "\" is not a number");
+                if (slotOf[f] < 0 || c > 0) continue;
+                float value = 0;
+                std::int64_t whole = 0;
+                const bool isWhole = header.fields[f].type != 'F' && parseWhole(word, whole);
+                if (!isWhole && !parseReal(word, value))
+                    scanner.fail("\"" + std::string(word.substr(0, 40)) + "\" is not a number");
+                numbers[std::size_t(slotOf[f])] = isWhole ? double(whole) : double(value);
             }
-        rows.push_back(row);
+        appendPoint(header, row, numbers, cloud);
+    }
+}
+
+void readBinary(const Header& header, const Layout& layout, Row& row, PointCloud& cloud) {
+    std::vector<double> numbers(row.fields.size());
+    for (std::int64_t p = 0; p < header.points; ++p) {
+        for (std::size_t slot = 0; slot < row.fields.size(); ++slot) {
+            const Field& field = header.fields[row.fields[slot]];
+            const std::int64_t at = layout.byField
+                                        ? field.offset * header.points + p * field.size * field.count
+                                        : p * header.rowBytes + field.offset;
+            numbers[slot] = numberAt(layout.bytes.data() + at, field);
+        }
+        appendPoint(header, row, numbers, cloud);
     }
 }
 
@@ -177,42 +269,18 @@ void readAscii(const std::string& path, const std::string& content, const Header
 
 PointCloud readPcd(const std::string& path, const std::string& content) {
     const Header header = readHeader(path, content);
-    static const char* const names[6] = {"x", "y", "z", "normal_x", "normal_y", "normal_z"};
-    std::array<int, 6> wanted;
-    wanted.fill(-1);
-    for (std::size_t f = 0; f < header.fields.size(); ++f)
-        for (std::size_t k = 0; k < 6; ++k)
-            if (header.fields[f].name == names[k] && header.fields[f].count > 0) wanted[k] = int(f);
-    if (wanted[0] < 0 || wanted[1] < 0 || wanted[2] < 0)
-        throw Error(ErrorCode::BadData, path + ": its fields have no x, y and z");
-    const bool normals = wanted[3] >= 0 && wanted[4] >= 0 && wanted[5] >= 0;
-    std::vector<std::array<float, 6>> rows;
+    Row row = rowOf(path, header);
+    PointCloud cloud;
     if (header.data == "ascii") {
-        readAscii(path, content, header, wanted, rows);
+        readAscii(path, content, header, row, cloud);
     } else if (header.data == "binary" || header.data == "binary_compressed") {
         std::string unpacked;
-        const Layout layout = binaryLayout(path, content, header, unpacked);
-        for (std::int64_t p = 0; p < header.points; ++p) {
-            std::array<float, 6> row{};
-            for (std::size_t k = 0; k < 6; ++k) {
-                if (wanted[k] < 0) continue;
-                const Field& field = header.fields[std::size_t(wanted[k])];
-                const std::int64_t at = layout.byField
-                                            ? field.offset * header.points + p * field.size * field.count
-                                            : p * header.rowBytes + field.offset;
-                row[k] = float(numberAt(layout.bytes.data() + at, field));
-            }
-            rows.push_back(row);
-        }
+        readBinary(header, binaryLayout(path, content, header, unpacked), row, cloud);
     } else {
         throw Error(ErrorCode::BadData, path + ": DATA \"" + header.data.substr(0, 40) +
                                             "\" is unknown; ascii, binary and binary_compressed are read");
     }
-    PointCloud cloud;
-    for (const std::array<float, 6>& row : rows) {
-        cloud.points.push_back({row[0], row[1], row[2]});
-        if (normals) cloud.normals.push_back({row[3], row[4], row[5]});
-    }
+    cloud.attributes = groupColumns(std::move(row.columns));
     return cloud;
 }
 

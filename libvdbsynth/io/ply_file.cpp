@@ -214,36 +214,63 @@ void checkCounts(const std::string& path, const std::string& content, const Head
     }
 }
 
-// Reads vertices; `normals` is null where nobody wants them, and stays empty where there are none.
-void readVertices(Body& body, const Element& element, std::vector<Vec3f>& points,
-                  std::vector<Vec3f>* normals) {
+// Where a property of a vertex goes.
+struct VertexLayout {
+    std::vector<int>
+        slot;  // of each property: 0 to 5 for x y z nx ny nz, 6 and on for a column, -1 for a list
+    std::vector<AttributeColumn> columns;
+    bool normals = false;
+};
+
+VertexLayout layoutOf(const Body& body, const Element& element) {
     static const char* const names[6] = {"x", "y", "z", "nx", "ny", "nz"};
-    std::vector<int> slot(element.properties.size(), -1);  // which of the six a property is
+    VertexLayout layout;
     bool found[6] = {};
-    for (std::size_t i = 0; i < element.properties.size(); ++i)
+    for (const Property& property : element.properties) {
+        layout.slot.push_back(-1);
+        if (property.list) continue;
         for (int k = 0; k < 6; ++k)
-            if (element.properties[i].name == names[k] && !element.properties[i].list) {
-                slot[i] = k;
+            if (property.name == names[k] && !found[k]) {
+                layout.slot.back() = k;
                 found[k] = true;
             }
+        if (layout.slot.back() >= 0) continue;
+        layout.slot.back() = 6 + int(layout.columns.size());
+        const double white = property.value == Type::UInt8 ? 255 : property.value == Type::UInt16 ? 65535 : 0;
+        layout.columns.push_back({property.name, white, {}});
+    }
     for (int axis = 0; axis < 3; ++axis)
         if (!found[axis]) body.fail(std::string("the vertices have no ") + names[axis]);
-    const bool wanted = normals && found[3] && found[4] && found[5];
+    layout.normals = found[3] && found[4] && found[5];
+    return layout;
+}
+
+// Reads vertices; `normals` is null where nobody wants them, and stays empty where there are none.
+void readVertices(Body& body, const Element& element, std::vector<Vec3f>& points, std::vector<Vec3f>* normals,
+                  Attributes& attributes) {
+    VertexLayout layout = layoutOf(body, element);
     points.reserve(std::size_t(element.count));
     for (std::int64_t v = 0; v < element.count; ++v) {
         float row[6] = {};
         for (std::size_t i = 0; i < element.properties.size(); ++i) {
-            if (slot[i] < 0 || (slot[i] >= 3 && !wanted)) {
+            const int slot = layout.slot[i];
+            if (slot < 0) {
                 body.skip(element.properties[i]);
                 continue;
             }
-            row[slot[i]] = float(body.number(element.properties[i].value));
-            if (!normals && !std::isfinite(row[slot[i]]))
+            const float value = float(body.number(element.properties[i].value));
+            if (slot >= 6) {
+                layout.columns[std::size_t(slot - 6)].values.push_back(value);
+                continue;
+            }
+            row[slot] = value;
+            if (!normals && slot < 3 && !std::isfinite(value))
                 body.fail("vertex " + std::to_string(v) + " has a coordinate that is not a finite number");
         }
         points.push_back({row[0], row[1], row[2]});
-        if (wanted) normals->push_back({row[3], row[4], row[5]});
+        if (normals && layout.normals) normals->push_back({row[3], row[4], row[5]});
     }
+    attributes = groupColumns(std::move(layout.columns));
 }
 
 // One index of a list. @return -1 for a negative one, which ends a strip
@@ -313,7 +340,7 @@ Mesh readPly(const std::string& path, const std::string& content) {
     Mesh mesh;
     for (const Element& element : header.elements) {
         if (element.name == "vertex")
-            readVertices(body, element, mesh.points, nullptr);
+            readVertices(body, element, mesh.points, nullptr, mesh.attributes);
         else if (element.name == "face")
             readFaces(body, element, mesh.points.size(), mesh);
         else if (element.name == "tristrips")
@@ -332,7 +359,7 @@ PointCloud readPlyPoints(const std::string& path, const std::string& content) {
     PointCloud cloud;
     for (const Element& element : header.elements) {
         if (element.name == "vertex") {
-            readVertices(body, element, cloud.points, &cloud.normals);
+            readVertices(body, element, cloud.points, &cloud.normals, cloud.attributes);
             break;
         }
         for (std::int64_t i = 0; i < element.count; ++i)

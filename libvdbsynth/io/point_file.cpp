@@ -21,6 +21,7 @@ bool isFinite(const Vec3f& v) {
 std::size_t clean(PointCloud& cloud) {
     bool normals = cloud.normals.size() == cloud.points.size();
     std::size_t kept = 0;
+    std::vector<std::size_t> rows;
     for (std::size_t i = 0; i < cloud.points.size(); ++i) {
         if (!isFinite(cloud.points[i])) continue;
         cloud.points[kept] = cloud.points[i];
@@ -30,8 +31,10 @@ std::size_t clean(PointCloud& cloud) {
             cloud.normals[kept] = normals ? cloud.normals[i] * (1 / size) : Vec3f{};
         }
         ++kept;
+        rows.push_back(i);
     }
     const std::size_t dropped = cloud.points.size() - kept;
+    if (dropped > 0) cloud.attributes = selectRows(cloud.attributes, rows);
     cloud.points.resize(kept);
     cloud.normals.resize(normals ? kept : 0);
     return dropped;

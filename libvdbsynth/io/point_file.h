@@ -20,8 +20,9 @@ struct PointFile {
 };
 
 /// Reads a point cloud, with normals where it has them and every one has a length:
-/// - .xyz, .pwn: rows of numbers; of six or more columns 4 to 6 are normals if all are unit vectors, within 2
-/// %.
+/// - .xyz, .pwn: rows of numbers; columns 4 to 6, or 7 to 9, are normals if all are unit vectors, within 2 %,
+/// else
+///   colours if all are from 0 to 255.
 ///   A .pwn may also begin with a count, followed by all points, then all normals;
 /// - .pcd: ascii, binary and binary_compressed, fields of any type and order;
 /// - .ply: as readMesh, vertices with nx ny nz.

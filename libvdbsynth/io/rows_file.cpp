@@ -38,15 +38,30 @@ PointCloud readCounted(TextScanner& scanner, const std::string& content, float c
 
 }  // namespace
 
+namespace {
+
+// What three columns of all rows hold.
+enum class Triple { Normals, Colours, Other };
+
+Triple kindOf(const std::vector<float>& rows, std::size_t columns, std::size_t first) {
+    bool unit = true, colour = true;
+    for (std::size_t at = first; at + 2 < rows.size() && (unit || colour); at += columns) {
+        const Vec3f v{rows[at], rows[at + 1], rows[at + 2]};
+        unit = unit && std::abs(length(v) - 1) < 0.02f;
+        for (int axis = 0; axis < 3; ++axis) colour = colour && v[axis] >= 0 && v[axis] <= 255;
+    }
+    return unit ? Triple::Normals : colour ? Triple::Colours : Triple::Other;
+}
+
+}  // namespace
+
 PointCloud readRows(const std::string& path, const std::string& content) {
     std::string text = content;
     for (char& c : text)
         if (c == ',' || c == ';') c = ' ';
     TextScanner scanner(path, text);
-    PointCloud cloud;
-    std::vector<float> numbers;
+    std::vector<float> numbers, rows;
     std::size_t columns = 0;
-    bool normals = true;
     while (!scanner.atEnd()) {
         readLine(scanner, numbers);
         if (columns == 0) {
@@ -58,13 +73,25 @@ PointCloud readRows(const std::string& path, const std::string& content) {
         if (numbers.size() != columns)
             scanner.fail("a row of " + std::to_string(numbers.size()) + " numbers where the first has " +
                          std::to_string(columns));
-        cloud.points.push_back({numbers[0], numbers[1], numbers[2]});
-        if (columns < 6 || !normals) continue;
-        const Vec3f normal{numbers[3], numbers[4], numbers[5]};
-        normals = std::abs(length(normal) - 1) < 0.02f;
-        cloud.normals.push_back(normal);
+        rows.insert(rows.end(), numbers.begin(), numbers.end());
     }
-    if (!normals) cloud.normals.clear();
+    PointCloud cloud;
+    const std::size_t count = columns > 0 ? rows.size() / columns : 0;
+    const auto vector = [&](std::size_t row, std::size_t first) {
+        const float* at = &rows[row * columns + first];
+        return Vec3f{at[0], at[1], at[2]};
+    };
+    for (std::size_t i = 0; i < count; ++i) cloud.points.push_back(vector(i, 0));
+    for (std::size_t first = 3; first + 2 < columns && first <= 6; first += 3) {
+        const Triple kind = kindOf(rows, columns, first);
+        if (kind == Triple::Normals && cloud.normals.empty())
+            for (std::size_t i = 0; i < count; ++i) cloud.normals.push_back(vector(i, first));
+        if (kind != Triple::Colours || !cloud.attributes.empty()) continue;
+        std::vector<AttributeColumn> colour{{"red", 0, {}}, {"green", 0, {}}, {"blue", 0, {}}};
+        for (std::size_t i = 0; i < count; ++i)
+            for (int c = 0; c < 3; ++c) colour[std::size_t(c)].values.push_back(vector(i, first)[c]);
+        cloud.attributes = groupColumns(std::move(colour));
+    }
     return cloud;
 }
 

@@ -6,10 +6,40 @@
 #include "libvdbsynth/vdb/redistance.h"
 
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/Clip.h>
 
 #include <algorithm>
 
 namespace vdbsynth {
+namespace {
+
+using Clippable =
+    openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid, openvdb::Int64Grid,
+                      openvdb::BoolGrid, openvdb::Vec3IGrid, openvdb::Vec3SGrid, openvdb::Vec3DGrid>;
+
+// A grid of any kind without what lies outside a box of the model's voxels; one that cannot be clipped as it
+// is.
+GridPtr clipped(const GridPtr& grid, const openvdb::FloatGrid& model, const IndexBox& box,
+                const RunContext& ctx) {
+    const auto corner = [](const Index3& p, double by) {
+        return openvdb::Vec3d(p.x + by, p.y + by, p.z + by);
+    };
+    // OpenVDB rounds both corners down.
+    const openvdb::BBoxd inside(corner(box.min, 0.01), corner(box.max, 0.49));
+    const openvdb::BBoxd world = model.transform().indexToWorld(inside);
+    GridPtr result = grid;
+    const bool done = grid->transform().isLinear() && grid->apply<Clippable>([&](auto& typed) {
+        result = openvdb::tools::clip(typed, world);
+        result->insertMeta(*grid);
+        result->setName(grid->getName());
+    });
+    if (!done)
+        message(ctx, MessageLevel::Warning,
+                "grid \"" + grid->getName() + "\" (" + grid->valueType() + ") is carried whole, not cropped");
+    return result;
+}
+
+}  // namespace
 
 LevelSet cropModel(const LevelSet& model, const IndexBox& box, const RunContext& ctx) {
     const ThreadLimit limit(ctx);
@@ -24,8 +54,13 @@ LevelSet cropModel(const LevelSet& model, const IndexBox& box, const RunContext&
         throw Error(
             ErrorCode::EmptyInput,
             "--box " + boxText(box) + ": no surface in it; the model's domain is " + boxText(model.domain));
-    LevelSet result{grid, box, true};
+    LevelSet result;
+    result.grid = grid;
+    result.domain = box;
+    result.domainRecorded = true;
     stampLevelSet(result);
+    for (const GridPtr& carried : model.carried)
+        result.carried.push_back(clipped(carried, *model.grid, box, ctx));
     return result;
 }
 

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 
 namespace vdbsynth {
 namespace {
@@ -69,7 +70,9 @@ std::vector<Vec3f> usedPoints(const Mesh& mesh) {
 LevelSet loadMesh(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
     const Mesh mesh = readMesh(path, ctx);
     const double voxelSize = chooseVoxelSize(path, usedPoints(mesh), options, ctx);
-    return asModel(meshToSolid(mesh, voxelSize, options.halfWidth, path, options.solid, ctx), path);
+    LevelSet model = asModel(meshToSolid(mesh, voxelSize, options.halfWidth, path, options.solid, ctx), path);
+    if (options.carry) model.carried = attributesToGrids(mesh, *model.grid, ctx);
+    return model;
 }
 
 LevelSet loadPoints(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
@@ -81,7 +84,10 @@ LevelSet loadPoints(const std::string& path, const ModelOptions& options, const 
     PointCloud core = file.cloud;
     dropOutliers(core, ctx);
     const double voxelSize = chooseVoxelSize(path, core.points, options, ctx);
-    return asModel(pointsToSolid(file.cloud, voxelSize, options.halfWidth, path, options.solid, ctx), path);
+    LevelSet model =
+        asModel(pointsToSolid(file.cloud, voxelSize, options.halfWidth, path, options.solid, ctx), path);
+    if (options.carry) model.carried = attributesToGrids(core, *model.grid, ctx);
+    return model;
 }
 
 // A level set at the voxel size asked for: its own if none is.
@@ -132,7 +138,7 @@ void requireModelPath(const std::string& path) {
     if (isModelPath(path)) return;
     throw Error(ErrorCode::InvalidOption, path +
                                               ": unknown extension; models are .vdb, meshes .obj, .ply, "
-                                              ".stl, .off, .mesh, points .ply, .xyz, .pwn, "
+                                              ".stl, .off, .gltf, .glb, .mesh, points .ply, .xyz, .pwn, "
                                               ".pcd, " +
                                               kRasterExtensions + ", each also with .gz");
 }
@@ -152,7 +158,15 @@ LevelSet loadModel(const std::string& path, const ModelOptions& options, const R
     VdbReadOptions read;
     read.gridName = options.grid;
     read.iso = options.iso;
-    return atVoxelSize(path, readVdbModel(path, read, ctx), options, ctx);
+    const std::vector<GridPtr> grids = readVdbGrids(path, ctx);
+    LevelSet model = atVoxelSize(path, modelFromGrids(path, grids, read, ctx), options, ctx);
+    if (options.carry) {
+        // All but the one that became the model.
+        const GridPtr used = pickedGrid(path, grids, read);
+        std::copy_if(grids.begin(), grids.end(), std::back_inserter(model.carried),
+                     [&](const GridPtr& grid) { return grid != used; });
+    }
+    return model;
 }
 
 LevelSet withHalfWidth(const LevelSet& model, double halfWidth, const RunContext& ctx) {

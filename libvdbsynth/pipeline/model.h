@@ -16,9 +16,11 @@ struct ModelOptions {
     double halfWidth = 3;  ///< [voxels] of the level set made from a mesh, 1.5..100
     SolidOptions solid;    ///< what to make of meshes that do not bound a solid
     std::string grid;      ///< which grid of a VDB file; empty: see VdbReadOptions
-    std::optional<double> iso;   ///< makes a fog volume a solid
-    HeightOptions heights;       ///< of images; its voxel size and resolution are those above
-    VolumeOptions volume;        ///< of volumes
+    std::optional<double> iso;  ///< makes a fog volume a solid
+    HeightOptions heights;      ///< of images; its voxel size and resolution are those above
+    VolumeOptions volume;       ///< of volumes
+    bool carry = false;         ///< fills LevelSet::carried: with a VDB's other grids, with the attributes of
+                                ///< vertices and points
     bool imageAsVolume = false;  ///< takes an image for a volume of one slice
 };
 

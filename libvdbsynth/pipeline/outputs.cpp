@@ -65,6 +65,7 @@ void writeOne(const LevelSet& model, const std::string& path, const std::string&
               const ModelOutputOptions& options, std::optional<Mesh>& mesh, const RunContext& ctx) {
     if (extensionOf(path) == "vdb") {
         std::vector<GridPtr> grids{model.grid};
+        grids.insert(grids.end(), model.carried.begin(), model.carried.end());
         grids.insert(grids.end(), options.extraGrids.begin(), options.extraGrids.end());
         writeVdb(temporary, grids, options.metadata);
         return;
@@ -73,13 +74,16 @@ void writeOne(const LevelSet& model, const std::string& path, const std::string&
     if (options.points) {
         PointOptions pointOptions;
         pointOptions.spacing = options.spacing;
-        writePointsPly(temporary, levelSetToPoints(*model.grid, pointOptions, ctx));
+        PointCloud cloud = levelSetToPoints(*model.grid, pointOptions, ctx);
+        cloud.attributes = gridsToAttributes(model.carried, cloud.points, ctx);
+        writePointsPly(temporary, cloud);
         return;
     }
     if (!mesh) {
         MeshingOptions meshing;
         meshing.adaptivity = options.adaptivity;
         mesh = levelSetToMesh(*model.grid, meshing, ctx);
+        mesh->attributes = gridsToAttributes(model.carried, mesh->points, ctx);
     }
     MeshFormat format{};
     writableMeshFormatOf(path, format);
@@ -92,9 +96,10 @@ void requireOutputPaths(const std::vector<std::string>& paths) {
     for (const std::string& path : paths) {
         MeshFormat format{};
         if (extensionOf(path) != "vdb" && !isHeightPath(path) && !writableMeshFormatOf(path, format))
-            throw Error(ErrorCode::InvalidOption, path +
-                                                      ": unknown extension; outputs are .vdb, .obj, .ply, "
-                                                      ".stl, .off, or .png and .exr for heights");
+            throw Error(ErrorCode::InvalidOption,
+                        path +
+                            ": unknown extension; outputs are .vdb, .obj, .ply, .stl, .off, .glb, .gltf, or "
+                            ".png and .exr for heights");
     }
 }
 

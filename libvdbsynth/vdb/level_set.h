@@ -11,9 +11,10 @@ namespace vdbsynth {
 
 /// A model as every command sees it: a narrow-band level set, negative inside, with a domain.
 struct LevelSet {
-    FloatGridPtr grid;            ///< name "surface", class level set, uniform voxels
-    IndexBox domain;              ///< the box that sizes and statistics mean
-    bool domainRecorded = false;  ///< false: the domain is just the box of the solid
+    FloatGridPtr grid;               ///< name "surface", class level set, uniform voxels
+    IndexBox domain;                 ///< the box that sizes and statistics mean
+    bool domainRecorded = false;     ///< false: the domain is just the box of the solid
+    std::vector<GridPtr> carried{};  ///< grids of any kind that came with it: colour, density, whatever
 };
 
 inline constexpr float kHalfWidth = 3.f;  ///< [voxels] of every level set we write

@@ -5,6 +5,7 @@
 #include "libvdbsynth/vdb/level_set.h"
 
 #include <string>
+#include <vector>
 
 namespace vdbsynth {
 
@@ -73,6 +74,23 @@ struct MeshingOptions {
 /// @par Repeats same bits for any number of threads
 Mesh levelSetToMesh(const openvdb::FloatGrid& grid, const MeshingOptions& options = {},
                     const RunContext& ctx = {});
+
+/// Each attribute of a mesh's vertices as a grid of its name over the active voxels of a level set: a float
+/// grid, or a Vec3s grid for attributes of two (z is 0) or three values. A voxel has the value at the nearest
+/// place of the mesh (barycentric), where no face is near that of the nearest vertex.
+/// @param mesh  [world]   @par Cost    as meshDistance (grid/mesh_distance.h)   @par Repeats same bits for
+/// any number of threads
+std::vector<GridPtr> attributesToGrids(const Mesh& mesh, const openvdb::FloatGrid& levelSet,
+                                       const RunContext& ctx = {});
+/// The same of points: a voxel blends the three nearest by the inverse of their squared distances.
+std::vector<GridPtr> attributesToGrids(const PointCloud& cloud, const openvdb::FloatGrid& levelSet,
+                                       const RunContext& ctx = {});
+/// Grids of numbers and vectors of three at places [world], by the grids' names; a vector grid "uv" gives two
+/// values. Trilinear over active voxels, the background where none is. Level sets and grids of other kinds
+/// are passed over.
+/// @par Repeats same bits for any number of threads
+Attributes gridsToAttributes(const std::vector<GridPtr>& grids, const std::vector<Vec3f>& places,
+                             const RunContext& ctx = {});
 
 struct PointOptions {
     double spacing = 1.0;  ///< [voxels], least distance between two points, 0.25..100

@@ -57,6 +57,10 @@ LevelSet readVdbModel(const std::string& path, const VdbReadOptions& options = {
 LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& grids,
                         const VdbReadOptions& options = {}, const RunContext& ctx = {});
 
+/// The one of the grids that modelFromGrids makes the model of. @throw Error BadData (none is usable)
+GridPtr pickedGrid(const std::string& path, const std::vector<GridPtr>& grids,
+                   const VdbReadOptions& options = {});
+
 /// The model at another voxel size, its domain the same box of the world in whole voxels. A level set is read
 /// by its zero level, so detail under a voxel is lost, never made. @throw Error EmptyInput, Memory
 LevelSet resampled(const LevelSet& model, double voxelSize, const RunContext& ctx = {});

@@ -21,10 +21,10 @@ bool isLevelSet(const openvdb::FloatGrid& grid) {
     return range.minimum < 0 && range.maximum > 0;
 }
 
-openvdb::FloatGrid::Ptr pickGrid(const std::string& path, const std::vector<GridPtr>& grids,
-                                 const VdbReadOptions& options) {
+// The grid itself, whatever kind of numbers it holds.
+GridPtr pickGrid(const std::string& path, const std::vector<GridPtr>& grids, const VdbReadOptions& options) {
     std::string names;
-    openvdb::FloatGrid::Ptr levelSet, fog;
+    GridPtr levelSet, fog;
     for (const GridPtr& grid : grids) {
         names += (names.empty() ? "" : ", ") + grid->getName() + " (" + grid->valueType() + ")";
         const openvdb::FloatGrid::Ptr floats = asFloat(grid);
@@ -32,14 +32,14 @@ openvdb::FloatGrid::Ptr pickGrid(const std::string& path, const std::vector<Grid
             if (!floats)
                 throw Error(ErrorCode::BadData, path + ": grid \"" + options.gridName + "\" holds " +
                                                     grid->valueType() + "; a float or double grid is needed");
-            return floats;
+            return grid;
         }
         if (!floats) continue;
         if (isLevelSet(*floats)) {
-            if (!levelSet || (floats->getName() == kSurfaceName && levelSet->getName() != kSurfaceName))
-                levelSet = floats;
+            if (!levelSet || (grid->getName() == kSurfaceName && levelSet->getName() != kSurfaceName))
+                levelSet = grid;
         } else if (!fog) {
-            fog = floats;
+            fog = grid;
         }
     }
     if (!options.gridName.empty())
@@ -103,10 +103,15 @@ openvdb::FloatGrid::Ptr fogToLevelSet(const std::string& path, const openvdb::Fl
 
 }  // namespace
 
+GridPtr pickedGrid(const std::string& path, const std::vector<GridPtr>& grids,
+                   const VdbReadOptions& options) {
+    return pickGrid(path, grids, options);
+}
+
 FloatGridPtr readVdbFloatGrid(const std::string& path, const std::string& name, const RunContext& ctx) {
     VdbReadOptions options;
     options.gridName = name;
-    const openvdb::FloatGrid::Ptr grid = pickGrid(path, readVdbGrids(path, ctx), options);
+    const openvdb::FloatGrid::Ptr grid = asFloat(pickGrid(path, readVdbGrids(path, ctx), options));
     refuseUnusable(path, *grid);
     return grid;
 }
@@ -117,7 +122,7 @@ LevelSet readVdbModel(const std::string& path, const VdbReadOptions& options, co
 
 LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& grids,
                         const VdbReadOptions& options, const RunContext& ctx) {
-    openvdb::FloatGrid::Ptr grid = pickGrid(path, grids, options);
+    openvdb::FloatGrid::Ptr grid = asFloat(pickGrid(path, grids, options));
     refuseUnusable(path, *grid);
     LevelSet model;
     std::string domainText;

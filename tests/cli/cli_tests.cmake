@@ -8,7 +8,7 @@ function(add_cli_test file)
   endforeach()
 endfunction()
 
-add_cli_test(path_test Doors StandardStreams MainPath Determinism Words)
+add_cli_test(path_test Attributes Doors StandardStreams MainPath Determinism Words)
 add_cli_test(error_test BadOptions BadFiles Disk Signals)
 add_cli_test(readme_test Readme)
 add_cli_test(rival_test Rival)

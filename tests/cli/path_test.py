@@ -61,6 +61,50 @@ class Doors(CliTest):
                 self.assertGreater(model["solid_voxels"], 100)
 
 
+class Attributes(CliTest):
+    def grids(self, name):
+        return {g["name"]: g["type"] for g in json.loads(self.ok("info", name, "--json").stdout)["grids"]}
+
+    def test_colour_goes_through_a_level_set(self):
+        # A cube whose colour is its place: red along x, green along y, blue along z.
+        corners = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+        faces = ("0 1 3 2", "4 6 7 5", "0 4 5 1", "2 3 7 6", "0 2 6 4", "1 5 7 3")
+        header = ("ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
+                  "property uchar green\nproperty uchar blue\nproperty float heat\nelement face 6\nproperty list uchar int vertex_indices\nend_header\n")
+        rows = [f"{x} {y} {z} {255 * x} {255 * y} {255 * z} {10 * z}" for x, y, z in corners]
+        self.write("cube.ply", header + "\n".join(rows + [f"4 {f}" for f in faces]) + "\n")
+        self.ok("convert", "cube.ply", "-o", "cube.vdb", "-o", "out.obj", "-o", "out.ply", "-o", "out.glb", "--resolution", 24)
+        self.assertEqual(self.grids("cube.vdb"), {"surface": "float", "Cd": "vec3s", "heat": "float"})
+        for line in self.read("out.obj").decode().splitlines():
+            if not line.startswith("v "):
+                continue
+            x, y, z, r, g, b = map(float, line.split()[1:])
+            for place, colour in ((x, r), (y, g), (z, b)):
+                self.assertAlmostEqual(place, colour, delta=0.05)
+        self.ok("convert", "out.glb", "-o", "again.vdb", "--resolution", 24)
+        self.assertEqual(self.grids("again.vdb"), {"surface": "float", "Cd": "vec3s", "heat": "float"})
+        self.ok("convert", "out.ply", "-o", "points.ply", "--as", "points", "--resolution", 24)
+        self.assertIn(b"property uchar red", self.read("points.ply")[:400])
+        self.assertIn(b"property float heat", self.read("points.ply")[:400])
+
+    def test_grids_of_a_vdb_are_carried(self):
+        script = ("import pyopenvdb as v\n"
+                  "s = v.createLevelSetSphere(radius=8, voxelSize=1)\ns.name = 'surface'\n"
+                  "c = v.Vec3SGrid(); c.name = 'Cd'; c.fill((-9, -9, -9), (9, 9, 9), (0.2, 0.4, 0.6))\n"
+                  "b = v.BoolGrid(); b.name = 'picked'; b.fill((0, 0, 0), (20, 20, 20), True)\n"
+                  "v.write('in.vdb', grids=[s, c, b])")
+        if subprocess.run(["/usr/bin/python3", "-c", script], cwd=self.folder, capture_output=True).returncode:
+            self.skipTest("python3-openvdb is absent")
+        self.ok("convert", "in.vdb", "-o", "out.vdb", "-o", "out.obj")
+        self.assertEqual(self.grids("out.vdb"), {"surface": "float", "Cd": "vec3s", "picked": "bool"})
+        self.assertIn(" 0.2 0.4 0.6\n", self.read("out.obj").decode())
+        self.ok("crop", "in.vdb", "-o", "part.vdb", "--box", "0,0,0,10,10,10")
+        grids = json.loads(self.ok("info", "part.vdb", "--json").stdout)["grids"]
+        box = {g["name"]: (g["active_min"], g["active_max"]) for g in grids}
+        self.assertEqual(box["Cd"], ([0, 0, 0], [9, 9, 9]))
+        self.assertEqual(box["picked"], ([0, 0, 0], [10, 10, 10]))
+
+
 class StandardStreams(CliTest):
     def piped(self, content, *words):
         return subprocess.run([PROGRAM, *map(str, words)], input=content, capture_output=True, cwd=self.folder, timeout=240)

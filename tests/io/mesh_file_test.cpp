@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <tuple>
+
 #include <cstring>
 
 #include "tests/support/makers.h"
@@ -259,4 +261,49 @@ TEST_CASE("readMesh: OBJ lines that go on after a backslash", "[io][oracle]") {
     CHECK(test::contains(
         test::thrownBy([&] { readMesh(folder.write("b.obj", "v 0 0 \\\n0\nv 1 x 0\n")); }).message,
         "b.obj:3"));
+}
+
+TEST_CASE("readMesh, writeMesh: attributes of vertices in every format that has them", "[io][property]") {
+    const test::TemporaryFolder folder;
+    Mesh mesh = test::boxMesh({0, 0, 0}, {1, 2, 3});
+    Attribute colour{"Cd", 3, {}}, heat{"heat", 1, {}}, flow{"flow", 3, {}}, uv{"uv", 2, {}};
+    for (int i = 0; i < 8; ++i) {
+        colour.values.insert(colour.values.end(), {float(i) / 7, 1, 0.2f});
+        heat.values.push_back(float(i) * 1.5f);
+        flow.values.insert(flow.values.end(), {float(i), 0, -1});
+        uv.values.insert(uv.values.end(), {float(i), 0.5f});
+    }
+    mesh.attributes = {colour, heat, flow, uv};
+    for (const auto& [name, format, count] :
+         {std::tuple("a.ply", MeshFormat::Ply, 4), std::tuple("a.obj", MeshFormat::Obj, 1),
+          std::tuple("a.off", MeshFormat::Off, 1)}) {
+        CAPTURE(name);
+        writeMesh(folder.path(name), format, mesh);
+        const Mesh back = readMesh(folder.path(name));
+        REQUIRE(back.attributes.size() == std::size_t(count));
+        for (std::size_t i = 0; i < 24; ++i)
+            REQUIRE(findAttribute(back.attributes, "Cd")->values[i] ==
+                    Approx(colour.values[i]).margin(0.002));
+        if (count == 1) continue;
+        CHECK(findAttribute(back.attributes, "heat")->values == heat.values);
+        CHECK(findAttribute(back.attributes, "flow")->values == flow.values);
+        CHECK(findAttribute(back.attributes, "uv")->values == uv.values);
+    }
+    // Colours beyond what 8 bits hold stay real numbers.
+    mesh.attributes = {{"Cd", 3, std::vector<float>(24, 4.5f)}};
+    writeMesh(folder.path("b.ply"), MeshFormat::Ply, mesh);
+    CHECK(test::contains(test::contentOf(folder.path("b.ply")).substr(0, 400), "property float Cd_x"));
+}
+
+TEST_CASE("readMesh: OBJ texture coordinates part the vertices of a seam", "[io][oracle]") {
+    const test::TemporaryFolder folder;
+    const Mesh mesh =
+        readMesh(folder.write("a.obj",
+                              "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0.5 0.5\n"
+                              "f 1/1 2/2 3/3\nf 1/4 3/3 4/1\nf 1/4 2/2 4/1\n"));
+    REQUIRE(mesh.points.size() == 5);  // vertex 1 has two texture coordinates
+    CHECK(mesh.triangles == std::vector<Triangle>{{0, 1, 2}, {4, 2, 3}, {4, 1, 3}});
+    CHECK(findAttribute(mesh.attributes, "uv")->values ==
+          std::vector<float>{0, 0, 1, 0, 1, 1, 0, 0, 0.5f, 0.5f});
+    CHECK(mesh.points[4].x == 0);
 }

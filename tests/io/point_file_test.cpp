@@ -113,3 +113,21 @@ TEST_CASE("readPoints: what is wrong is named", "[io][error]") {
                              .message,
                          "no x, y and z"));
 }
+
+TEST_CASE("readPoints: colours of rows and of PCD, and other fields", "[io][oracle]") {
+    const test::TemporaryFolder folder;
+    const PointFile rows = readPoints(folder.write("a.xyz", "0 0 0 255 51 0\n1 0 0 0 0 255\n"));
+    REQUIRE(rows.cloud.attributes.size() == 1);
+    CHECK(rows.cloud.attributes[0].values == std::vector<float>{1, 0.2f, 0, 0, 0, 1});
+    const PointFile both = readPoints(folder.write("b.xyz", "0 0 0 0 0 1 255 51 0\n1 0 0 0 1 0 0 0 255\n"));
+    CHECK(both.cloud.normals.size() == 2);
+    CHECK(both.cloud.attributes.size() == 1);
+    // 0x00ff3300 as a whole number; a point without a place takes its colour along.
+    std::string header =
+        "VERSION 0.7\nFIELDS x y z rgb heat\nSIZE 4 4 4 4 4\nTYPE F F F U F\nCOUNT 1 1 1 1 1\nWIDTH "
+        "2\nHEIGHT 1\nPOINTS 2\nDATA ascii\n";
+    const PointFile pcd = readPoints(folder.write("c.pcd", header + "nan 0 0 255 1\n1 2 3 16724736 7\n"));
+    REQUIRE(pcd.cloud.points.size() == 1);
+    CHECK(findAttribute(pcd.cloud.attributes, "Cd")->values == std::vector<float>{1, 0.2f, 0});
+    CHECK(findAttribute(pcd.cloud.attributes, "heat")->values == std::vector<float>{7});
+}

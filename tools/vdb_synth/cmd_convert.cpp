@@ -16,7 +16,8 @@ void requireKind(const std::string& as, const std::string& extension) {
     if (as == "levelset") requireOption(extension == "vdb", "as", as, "written to .vdb");
     if (as == "heightfield") requireOption(heights, "as", as, "written to .png or .exr");
     if (as == "mesh")
-        requireOption(!heights && extension != "vdb", "as", as, "written to .obj, .ply, .stl or .off");
+        requireOption(!heights && extension != "vdb", "as", as,
+                      "written to .obj, .ply, .stl, .off, .glb or .gltf");
 }
 
 void convert(Run& run) {
@@ -35,6 +36,7 @@ void convert(Run& run) {
                   "mesh, points, levelset, heightfield or volume; or an extension for standard input");
     outputs.points = as == "points";
     for (const std::string& path : paths) requireKind(as, extensionOf(path));
+    modelOptions.carry = true;
     modelOptions.imageAsVolume = as == "volume";
     outputs.adaptivity = run.arguments.real("adaptivity", 0, 0, 1);
     outputs.spacing = run.arguments.real("spacing", 1, 0.25, 100);

@@ -18,9 +18,11 @@ void crop(Run& run) {
                     "--box: missing; give i,j,k,I,J,K in index space, both corners inclusive");
     const IndexBox box = run.arguments.box("box");
     requireModelPath(run.arguments.inputs[0]);
-    const double halfWidth = run.modelOptions().halfWidth;
+    ModelOptions options = run.modelOptions();
+    options.carry = true;
     const LevelSet result =
-        withHalfWidth(cropModel(run.load(run.arguments.inputs[0]), box, run.context), halfWidth, run.context);
+        withHalfWidth(cropModel(run.load(run.arguments.inputs[0], options), box, run.context),
+                      options.halfWidth, run.context);
     ModelOutputOptions outputs;
     outputs.metadata = run.metadata();
     writeModel(result, paths, outputs, run.outputs(), run.context);

@@ -17,6 +17,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iterator>
+#include <memory>
 
 namespace vdbsynth {
 namespace {
@@ -71,6 +72,7 @@ LevelSet loadMesh(const std::string& path, const ModelOptions& options, const Ru
     const Mesh mesh = readMesh(path, ctx);
     const double voxelSize = chooseVoxelSize(path, usedPoints(mesh), options, ctx);
     LevelSet model = asModel(meshToSolid(mesh, voxelSize, options.halfWidth, path, options.solid, ctx), path);
+    if (options.keepSource) model.source = std::make_shared<const Mesh>(mesh);
     if (options.carry) model.carried = attributesToGrids(mesh, *model.grid, ctx);
     return model;
 }

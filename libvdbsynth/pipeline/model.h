@@ -21,6 +21,7 @@ struct ModelOptions {
     VolumeOptions volume;       ///< of volumes
     bool carry = false;         ///< fills LevelSet::carried: with a VDB's other grids, with the attributes of
                                 ///< vertices and points
+    bool keepSource = false;    ///< keeps a mesh in LevelSet::source
     bool imageAsVolume = false;  ///< takes an image for a volume of one slice
 };
 

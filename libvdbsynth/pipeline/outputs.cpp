@@ -82,6 +82,8 @@ void writeOne(const LevelSet& model, const std::string& path, const std::string&
     if (!mesh) {
         MeshingOptions meshing;
         meshing.adaptivity = options.adaptivity;
+        meshing.sharp = options.sharp;
+        meshing.source = model.source.get();
         mesh = levelSetToMesh(*model.grid, meshing, ctx);
         mesh->attributes = gridsToAttributes(model.carried, mesh->points, ctx);
     }

@@ -11,9 +11,10 @@
 namespace vdbsynth {
 
 struct ModelOutputOptions {
-    bool points = false;                  ///< .ply holds points with normals instead of a mesh
-    double adaptivity = 0;                ///< 0..1, for meshes
-    double spacing = 1;                   ///< [voxels] between points, 0.25..100
+    bool points = false;    ///< .ply holds points with normals instead of a mesh
+    bool sharp = false;     ///< meshes keep edges and corners, by the model's source where it has one
+    double adaptivity = 0;  ///< 0..1, for meshes
+    double spacing = 1;     ///< [voxels] between points, 0.25..100
     HeightPlane plane = HeightPlane::XY;  ///< of height images
     double height = 0;                    ///< [world] that is white in a .png; 0: the highest place
     std::vector<GridPtr> extraGrids;      ///< written beside `surface` into .vdb outputs

@@ -1,9 +1,11 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/geometry/mesh.h"
 #include "libvdbsynth/math/index_box.h"
 #include "libvdbsynth/math/vec3.h"
 #include "libvdbsynth/vdb/vdb_fwd.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,8 @@ struct LevelSet {
     IndexBox domain;                 ///< the box that sizes and statistics mean
     bool domainRecorded = false;     ///< false: the domain is just the box of the solid
     std::vector<GridPtr> carried{};  ///< grids of any kind that came with it: colour, density, whatever
+    /// [world] the mesh it was made from, where that was asked to be kept
+    std::shared_ptr<const Mesh> source{};
 };
 
 inline constexpr float kHalfWidth = 3.f;  ///< [voxels] of every level set we write

@@ -6,6 +6,7 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 
 namespace vdbsynth {
@@ -21,13 +22,27 @@ void toWorld(const openvdb::FloatGrid& grid, Mesh& mesh) {
     for (Quad& q : mesh.quads) std::swap(q[1], q[3]);
 }
 
+Mesh inIndexSpace(const openvdb::FloatGrid& grid, Mesh mesh) {
+    for (Vec3f& p : mesh.points) p = cast<float>(fromVec(grid.worldToIndex(toVec(cast<double>(p)))));
+    return mesh;
+}
+
 }  // namespace
 
 Mesh levelSetToMesh(const openvdb::FloatGrid& grid, const MeshingOptions& options, const RunContext& ctx) {
     requireOption(options.adaptivity >= 0 && options.adaptivity <= 1, "adaptivity",
                   std::to_string(options.adaptivity), "from 0 to 1");
     Stage stage(ctx, "level set to mesh", 2);
-    Mesh mesh = zeroLevelInIndexSpace(grid, options.adaptivity, ctx);
+    if (options.sharp && options.adaptivity > 0)
+        throw Error(ErrorCode::InvalidOption, "--sharp and --adaptivity: give one of them");
+    Mesh mesh;
+    if (options.sharp) {
+        std::optional<Mesh> source;
+        if (options.source) source = inIndexSpace(grid, *options.source);
+        mesh = sharpZeroLevel(grid, source ? &*source : nullptr, ctx);
+    } else {
+        mesh = zeroLevelInIndexSpace(grid, options.adaptivity, ctx);
+    }
     if (mesh.faceCount() == 0) throw Error(ErrorCode::EmptyInput, "the level set has no surface to mesh");
     stage.advance();
     separateNonManifold(mesh, kGap);

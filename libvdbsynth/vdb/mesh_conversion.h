@@ -30,6 +30,9 @@ enum class OpenMesh {
 struct SolidOptions {
     OpenMesh open = OpenMesh::Close;
     double thickness = 0;  ///< [world] of a shell, above 0
+    /// Distances of closed meshes as they are. Else OpenVDB smooths bumps of overlapping parts, as vdb_tool
+    /// has it, which moves concave creases by up to half a voxel.
+    bool exact = false;
 };
 
 /// A level set of any mesh. One that bounds a solid, perhaps after vertices on one place were welded and
@@ -65,12 +68,15 @@ FloatGridPtr sheetToField(const Mesh& indexMesh, double thickness, const RunCont
 struct MeshingOptions {
     double adaptivity =
         0.0;  ///< 0..1: how far flat regions may be merged; 0 keeps about two triangles a surface voxel
+    bool sharp = false;            ///< keeps edges and corners (zero_level.h); not with adaptivity
+    const Mesh* source = nullptr;  ///< [world] for sharp: the mesh that the level set was made from
 };
 
-/// The zero level as a closed manifold mesh with outward faces: OpenVDB's dual contouring, then two Newton
-/// steps that put each vertex on the trilinear zero level (OpenVDB's own lie up to a tenth of a voxel
-/// inside curved surfaces), then sheets that touch are separated (geometry/mesh.h).
-/// @throw Error InvalidOption (--adaptivity), EmptyInput (no zero level), Cancelled
+/// The zero level as a closed manifold mesh with outward faces, by one of two ways: sharp, see zero_level.h;
+/// else OpenVDB's dual contouring, then two Newton steps that put each vertex on the trilinear zero level
+/// (OpenVDB's own lie up to a tenth of a voxel inside curved surfaces), then sheets that touch are separated
+/// (geometry/mesh.h).
+/// @throw Error InvalidOption (--adaptivity, --sharp), EmptyInput (no zero level), Cancelled
 /// @par Repeats same bits for any number of threads
 Mesh levelSetToMesh(const openvdb::FloatGrid& grid, const MeshingOptions& options = {},
                     const RunContext& ctx = {});

@@ -133,26 +133,51 @@ void checkOptions(double voxelSize, double halfWidth) {
                   "from 1.5 to 1000 voxels");
 }
 
-FloatGridPtr openVdbLevelSet(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
-                             const RunContext& ctx) {
+struct Faces {
+    std::vector<openvdb::Vec3s> points;
+    std::vector<openvdb::Vec3I> triangles;
+    std::vector<openvdb::Vec4I> quads;
+};
+
+Faces facesOf(const Mesh& mesh) {
+    Faces faces;
+    faces.points.reserve(mesh.points.size());
+    for (const Vec3f& p : mesh.points) faces.points.emplace_back(p.x, p.y, p.z);
+    faces.triangles.reserve(mesh.triangles.size());
+    for (const Triangle& t : mesh.triangles) faces.triangles.emplace_back(t[0], t[1], t[2]);
+    faces.quads.reserve(mesh.quads.size());
+    for (const Quad& q : mesh.quads) faces.quads.emplace_back(q[0], q[1], q[2], q[3]);
+    return faces;
+}
+
+// As OpenVDB's meshToLevelSet, without its last step of smoothing.
+openvdb::FloatGrid::Ptr unsmoothed(openvdb::util::NullInterrupter& interrupter,
+                                   const openvdb::math::Transform& transform, Faces faces, float halfWidth) {
+    for (openvdb::Vec3s& p : faces.points) p = openvdb::Vec3s(transform.worldToIndex(p));
+    for (const openvdb::Vec3I& t : faces.triangles)
+        faces.quads.emplace_back(t[0], t[1], t[2], openvdb::util::INVALID_IDX);
+    const openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec4I> adapter(faces.points,
+                                                                                             faces.quads);
+    const auto grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
+        interrupter, adapter, transform, halfWidth, halfWidth, openvdb::tools::DISABLE_RENORMALIZATION);
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    return grid;
+}
+
+FloatGridPtr openVdbLevelSet(const Mesh& mesh, double voxelSize, double halfWidth, bool exact,
+                             const std::string& name, const RunContext& ctx) {
     requireBandMemory(mesh, voxelSize, halfWidth, name, ctx);
     Stage stage(ctx, "mesh to level set", 1);
-    std::vector<openvdb::Vec3s> points;
-    points.reserve(mesh.points.size());
-    for (const Vec3f& p : mesh.points) points.emplace_back(p.x, p.y, p.z);
-    std::vector<openvdb::Vec3I> triangles;
-    triangles.reserve(mesh.triangles.size());
-    for (const Triangle& t : mesh.triangles) triangles.emplace_back(t[0], t[1], t[2]);
-    std::vector<openvdb::Vec4I> quads;
-    quads.reserve(mesh.quads.size());
-    for (const Quad& q : mesh.quads) quads.emplace_back(q[0], q[1], q[2], q[3]);
+    const Faces faces = facesOf(mesh);
     const ThreadLimit limit(ctx);
     return behindWall(ErrorCode::Unusable, name, [&] {
         Interrupter interrupter(ctx);
+        openvdb::util::NullInterrupter& base = interrupter;
         const auto transform = openvdb::math::Transform::createLinearTransform(voxelSize);
-        openvdb::FloatGrid::Ptr grid = openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(
-            static_cast<openvdb::util::NullInterrupter&>(interrupter), *transform, points, triangles, quads,
-            float(halfWidth));
+        const openvdb::FloatGrid::Ptr grid =
+            exact ? unsmoothed(base, *transform, faces, float(halfWidth))
+                  : openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(
+                        base, *transform, faces.points, faces.triangles, faces.quads, float(halfWidth));
         throwIfCancelled(ctx);
         stage.advance();
         return FloatGridPtr(grid);
@@ -170,7 +195,7 @@ FloatGridPtr meshToSolid(const Mesh& mesh, double voxelSize, double halfWidth, c
     requireOption(!shell || options.thickness >= voxelSize, "thickness", std::to_string(options.thickness),
                   "at least a voxel, which is " + std::to_string(voxelSize));
     if (!shell && boundsSolid(mesh)) {
-        const FloatGridPtr grid = openVdbLevelSet(mesh, voxelSize, halfWidth, name, ctx);
+        const FloatGridPtr grid = openVdbLevelSet(mesh, voxelSize, halfWidth, options.exact, name, ctx);
         const Volumes volumes = volumesOf(*grid, mesh, voxelSize);
         if (missingVolume(volumes, mesh, voxelSize).empty() && !lostCavities(volumes, voxelSize)) return grid;
     }
@@ -186,7 +211,8 @@ FloatGridPtr meshToSolid(const Mesh& mesh, double voxelSize, double halfWidth, c
             name + ": " + prepared.found +
                 (prepared.balanced ? "; turned" : "; inside is where the faces wind round more than half"));
     if (prepared.balanced) {
-        const FloatGridPtr grid = openVdbLevelSet(prepared.mesh, voxelSize, halfWidth, name, ctx);
+        const FloatGridPtr grid =
+            openVdbLevelSet(prepared.mesh, voxelSize, halfWidth, options.exact, name, ctx);
         const Volumes volumes = volumesOf(*grid, prepared.mesh, voxelSize);
         const std::string wrong = missingVolume(volumes, prepared.mesh, voxelSize);
         if (!wrong.empty()) throw Error(ErrorCode::Unusable, name + ": " + wrong);
@@ -204,7 +230,7 @@ FloatGridPtr meshToSolid(const Mesh& mesh, double voxelSize, double halfWidth, c
 FloatGridPtr meshToLevelSet(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
                             const RunContext& ctx) {
     checkOptions(voxelSize, halfWidth);
-    const FloatGridPtr grid = openVdbLevelSet(mesh, voxelSize, halfWidth, name, ctx);
+    const FloatGridPtr grid = openVdbLevelSet(mesh, voxelSize, halfWidth, /* exact= */ false, name, ctx);
     const std::string wrong = missingVolume(volumesOf(*grid, mesh, voxelSize), mesh, voxelSize);
     if (!wrong.empty()) throw Error(ErrorCode::Unusable, name + ": " + wrong);
     return grid;

@@ -38,6 +38,9 @@ void convert(Run& run) {
     for (const std::string& path : paths) requireKind(as, extensionOf(path));
     modelOptions.carry = true;
     modelOptions.imageAsVolume = as == "volume";
+    outputs.sharp = modelOptions.keepSource = modelOptions.solid.exact = run.arguments.has("sharp");
+    if (outputs.sharp && run.arguments.has("adaptivity"))
+        throw Error(ErrorCode::InvalidOption, "--sharp and --adaptivity: give one of them");
     outputs.adaptivity = run.arguments.real("adaptivity", 0, 0, 1);
     outputs.spacing = run.arguments.real("spacing", 1, 0.25, 100);
     requireModelPath(run.arguments.inputs[0]);
@@ -51,15 +54,17 @@ void convert(Run& run) {
 
 }  // namespace
 
-const Command kConvert{"convert",
-                       "convert IN -o OUT [options]",
-                       "Turn any model into a level set, mesh or points",
-                       "vdb_synth convert bunny.off -o bunny.vdb --resolution 200",
-                       {{"as", "KIND",
-                         "mesh, points, levelset or heightfield: what to write, default by extension (.ply: "
-                         "mesh); volume: what an image is; for standard input: its extension"},
-                        {"adaptivity", "A", "0 to 1: merge flat parts of a mesh, default 0"},
-                        {"spacing", "S", "least distance between points (voxels), default 1"}},
-                       convert};
+const Command kConvert{
+    "convert",
+    "convert IN -o OUT [options]",
+    "Turn any model into a level set, mesh or points",
+    "vdb_synth convert bunny.off -o bunny.vdb --resolution 200",
+    {{"as", "KIND",
+      "mesh, points, levelset or heightfield: what to write, default by extension (.ply: "
+      "mesh); volume: what an image is; for standard input: its extension"},
+     {"adaptivity", "A", "0 to 1: merge flat parts of a mesh, default 0"},
+     {"sharp", "", "keep the edges and corners of a mesh, by the input's faces where it is a mesh"},
+     {"spacing", "S", "least distance between points (voxels), default 1"}},
+    convert};
 
 }  // namespace vdbsynth::cli

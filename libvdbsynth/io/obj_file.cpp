@@ -39,7 +39,9 @@ void readVertexLines(const std::string& path, const std::string& content, Mesh& 
         }
         scanner.skipLine();
     }
-    const bool coloured = !mesh.points.empty() && colour[2].values.size() == mesh.points.size();
+    bool coloured = !mesh.points.empty();
+    for (const AttributeColumn& column : colour)
+        coloured = coloured && column.values.size() == mesh.points.size();
     if (coloured) mesh.attributes = groupColumns(std::move(colour));
 }
 

@@ -54,7 +54,10 @@ Mesh readOff(const std::string& path, const std::string& content) {
         for (std::size_t k = 0; k < colour.size(); ++k) readColour(scanner, colour[k]);
         scanner.skipLine();  // opacity, texture coordinates
     }
-    if (colours && vertices > 0 && colour[2].values.size() == mesh.points.size()) {
+    bool coloured = colours && vertices > 0;
+    for (const AttributeColumn& column : colour)
+        coloured = coloured && column.values.size() == mesh.points.size();
+    if (coloured) {
         // Whole numbers run to 255, even where none is over 1.
         for (AttributeColumn& column : colour) column.white = column.white == 1 ? 0 : 255;
         mesh.attributes = groupColumns(std::move(colour));

@@ -6,7 +6,9 @@
 
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
+#include <openvdb/tree/LeafManager.h>
 
+#include <atomic>
 #include <cmath>
 
 namespace vdbsynth {
@@ -184,6 +186,28 @@ FloatGridPtr openVdbLevelSet(const Mesh& mesh, double voxelSize, double halfWidt
     });
 }
 
+// True if a voxel at the surface has an inactive neighbour: OpenVDB drops voxels where sheets lie upon each
+// other.
+bool hasGaps(const openvdb::FloatGrid& grid, const RunContext& ctx) {
+    const openvdb::tree::LeafManager<const openvdb::FloatTree> leaves(grid.tree());
+    const float near = 0.9f * float(voxelSizeOf(grid));
+    std::atomic<bool> found{false};
+    parallelFor(ctx, leaves.leafCount(), 64, [&](std::size_t begin, std::size_t end) {
+        const auto accessor = grid.getConstAccessor();
+        for (std::size_t i = begin; i < end && !found.load(std::memory_order_relaxed); ++i)
+            for (auto voxel = leaves.leaf(i).cbeginValueOn(); voxel; ++voxel) {
+                if (std::abs(*voxel) >= near) continue;
+                const openvdb::Coord c = voxel.getCoord();
+                for (int side = 0; side < 6; ++side) {
+                    openvdb::Coord neighbour = c;
+                    neighbour[side / 2] += side % 2 ? 1 : -1;
+                    if (!accessor.isValueOn(neighbour)) found.store(true, std::memory_order_relaxed);
+                }
+            }
+    });
+    return found.load();
+}
+
 }  // namespace
 
 FloatGridPtr meshToSolid(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
@@ -197,7 +221,9 @@ FloatGridPtr meshToSolid(const Mesh& mesh, double voxelSize, double halfWidth, c
     if (!shell && boundsSolid(mesh)) {
         const FloatGridPtr grid = openVdbLevelSet(mesh, voxelSize, halfWidth, options.exact, name, ctx);
         const Volumes volumes = volumesOf(*grid, mesh, voxelSize);
-        if (missingVolume(volumes, mesh, voxelSize).empty() && !lostCavities(volumes, voxelSize)) return grid;
+        if (missingVolume(volumes, mesh, voxelSize).empty() && !lostCavities(volumes, voxelSize) &&
+            !hasGaps(*grid, ctx))
+            return grid;
     }
     Prepared prepared;
     if (shell)
@@ -216,7 +242,7 @@ FloatGridPtr meshToSolid(const Mesh& mesh, double voxelSize, double halfWidth, c
         const Volumes volumes = volumesOf(*grid, prepared.mesh, voxelSize);
         const std::string wrong = missingVolume(volumes, prepared.mesh, voxelSize);
         if (!wrong.empty()) throw Error(ErrorCode::Unusable, name + ": " + wrong);
-        if (!lostCavities(volumes, voxelSize)) return grid;
+        if (!lostCavities(volumes, voxelSize) && !hasGaps(*grid, ctx)) return grid;
     }
     requireBandMemory(mesh, voxelSize, halfWidth + options.thickness / voxelSize, name, ctx);
     Stage stage(ctx, "mesh to level set", 1);

@@ -12,6 +12,11 @@ add_cli_test(path_test Attributes Doors StandardStreams MainPath Determinism Wor
 add_cli_test(error_test BadOptions BadFiles Disk Signals)
 add_cli_test(readme_test Readme)
 add_cli_test(rival_test Rival)
+add_cli_test(programs_test Programs)
+
+# A short run of every fuzz target; tools/dev/fuzz.sh runs them for longer.
+add_test(NAME "fuzz: readers" COMMAND ${PROJECT_SOURCE_DIR}/tools/dev/fuzz.sh 3)
+set_tests_properties("fuzz: readers" PROPERTIES LABELS "fuzz;slow" TIMEOUT 1200 SKIP_RETURN_CODE 77)
 
 add_test(NAME "lint: stairs" COMMAND /usr/bin/python3 ${PROJECT_SOURCE_DIR}/tools/dev/check_stairs.py ${PROJECT_SOURCE_DIR})
 add_test(NAME "lint: format" COMMAND ${PROJECT_SOURCE_DIR}/tools/dev/check_format.sh)

@@ -1,6 +1,7 @@
 """Errors by the contract: exit code, one line that names the file or option, nothing written."""
 import os
 import random
+import shutil
 import signal
 import subprocess
 import time
@@ -149,10 +150,14 @@ class Disk(CliTest):
 
     def test_a_write_that_fails_harms_nothing(self):
         self.ok("make", "grid", "g.vdb", "--resolution", 24)
-        for name in ("x.vdb", "x.obj", "x.ply", "x.stl", "x.off"):
-            self.write(name, "old")
-            self.fails(3, name, "convert", "g.vdb", "-o", name, preexec_fn=self.limited(5000))
-            self.assertEqual(self.read(name), b"old")
+        for name in ("x.vdb", "x.obj", "x.ply", "x.stl", "x.off", "x.glb", "x.gltf", "x.png", "x.exr"):
+            self.ok("convert", "g.vdb", "-o", name, "--quiet")
+            size = os.path.getsize(self.path(name))
+            for room in (0, 1, size // 3, size - 1):
+                self.write(name, "old")
+                self.fails(3, name, "convert", "g.vdb", "-o", name, "--quiet", preexec_fn=self.limited(room))
+                self.assertEqual(self.read(name), b"old")
+            os.remove(self.path(name))
         self.write("x.png", "old")
         self.fails(3, "x.png", "render", "g.vdb", "-o", "x.png", preexec_fn=self.limited(5000))
         self.assertEqual(self.read("x.png"), b"old")
@@ -170,6 +175,19 @@ class Disk(CliTest):
             self.assertEqual(os.listdir(disk), [])
         finally:
             subprocess.run(["umount", disk])
+
+    def test_a_folder_that_vanishes(self):
+        self.ok("make", "balls", "b.vdb", "--resolution", 64)
+        os.mkdir(self.path("gone"))
+        process = subprocess.Popen([PROGRAM, "synth", "b.vdb", "-o", "gone/x.vdb", "--size", "2x,2x,1x", "--draft"], cwd=self.folder,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        deadline = time.time() + 20
+        while not os.listdir(self.path("gone")) and time.time() < deadline:
+            time.sleep(0.005)
+        shutil.rmtree(self.path("gone"))
+        _, words = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 3, words)
+        self.assertIn("error: gone/x.vdb: cannot be written", words)
 
     def test_a_read_only_folder(self):
         self.ok("make", "grid", "g.vdb", "--resolution", 24)
@@ -220,19 +238,25 @@ class Signals(CliTest):
         self.assertEqual(self.files(), ["b.vdb", "x.vdb"])
 
     def test_random_kills_never_leave_a_half_file(self):
-        self.ok("convert", "b.vdb", "-o", "whole.obj")
-        whole = self.read("whole.obj")
+        names = ("x.obj", "x.ply", "x.vdb", "x.glb")
+        for name in names:
+            self.ok("convert", "b.vdb", "-o", f"whole.{name}", "--quiet")
         draw = random.Random(1)
-        for _ in range(25):
-            self.write("x.obj", "old")
-            process = subprocess.Popen([PROGRAM, "convert", "b.vdb", "-o", "x.obj"], cwd=self.folder, stderr=subprocess.DEVNULL)
-            time.sleep(draw.uniform(0.0, 0.5))
+        kept = 0
+        for kill in range(200):
+            name = names[kill % len(names)]
+            self.write(name, "old")
+            process = subprocess.Popen([PROGRAM, "convert", "b.vdb", "-o", name, "--quiet"], cwd=self.folder, stderr=subprocess.DEVNULL)
+            time.sleep(draw.uniform(0.0, 0.35))
             process.kill()
             process.wait()
-            time.sleep(0.05)
-            self.assertIn(self.read("x.obj"), (b"old", whole))
+            time.sleep(0.02)
+            self.assertIn(self.read(name), (b"old", self.read(f"whole.{name}")))
+            kept += self.read(name) == b"old"
+        self.assertGreater(kept, 20)  # most were killed before the end
         time.sleep(0.5)
-        self.ok("convert", "b.vdb", "-o", "x.obj")
+        for name in names:
+            self.ok("convert", "b.vdb", "-o", name, "--quiet")
         self.assertFalse([f for f in self.files() if f.endswith(".tmp")])
 
 

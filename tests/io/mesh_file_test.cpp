@@ -307,3 +307,11 @@ TEST_CASE("readMesh: OBJ texture coordinates part the vertices of a seam", "[io]
           std::vector<float>{0, 0, 1, 0, 1, 1, 0, 0, 0.5f, 0.5f});
     CHECK(mesh.points[4].x == 0);
 }
+
+TEST_CASE("readMesh: colours that some vertices lack in part are passed over", "[io][regression]") {
+    const test::TemporaryFolder folder;
+    CHECK(readMesh(folder.write("a.obj", "v 0 0 0 x 1 1\nv 1 0 0 1 1 1\nv 0 1 0 1 1 1\nf 1 2 3\n"))
+              .attributes.empty());
+    CHECK(readMesh(folder.write("a.off", "COFF 3 1 0\n0 0 0 x 1 1\n1 0 0 1 1 1\n0 1 0 1 1 1\n3 0 1 2\n"))
+              .attributes.empty());
+}

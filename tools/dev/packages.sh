@@ -5,8 +5,8 @@ build=(g++ cmake ninja-build ccache libopenvdb-dev libboost-iostreams-dev libtbb
        nlohmann-json3-dev libeigen3-dev libnanoflann-dev libjpeg62-turbo-dev libopenexr-dev libpng-dev libpugixml-dev
        libtiff-dev libtinygltf-dev libxxhash-dev zlib1g-dev)
 test=(catch2 python3 procps)
-# Rivals to compare with, linters.
-all=(libopenvdb-tools python3-openvdb python3-numpy clang-format)
+# Rivals to compare with, programs that must read what we write, fuzzers, linters.
+all=(libopenvdb-tools python3-openvdb python3-numpy blender clang clang-format libclang-rt-14-dev)
 
 case "${1:-build}" in
   build) wanted=("${build[@]}") ;;

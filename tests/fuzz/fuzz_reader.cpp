@@ -1,0 +1,24 @@
+// One reader under libFuzzer: FUZZ_CALL is the call, of `path` and `content`. Anything but a result or an
+// Error is found.
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/io/gzip.h"
+#include "libvdbsynth/io/mesh_readers.h"
+#include "libvdbsynth/io/point_readers.h"
+#include "libvdbsynth/io/raster_readers.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace vdbsynth;
+    const std::string path = "fuzz", content(reinterpret_cast<const char*>(data), size);
+    RunContext ctx;
+    ctx.maxMemory = 300000000;
+    try {
+        (void)(FUZZ_CALL);
+    } catch (const Error& error) {
+        if (std::string(error.what()).empty()) __builtin_trap();
+    }
+    return 0;
+}

@@ -206,11 +206,21 @@ private:
     const RunContext& mContext;
 };
 
+// The values of a tag that libtiff does not know, null unless they are of this type: a file may give it any.
+const void* valuesOf(TIFF* file, std::uint32_t tag, TIFFDataType type, std::uint32_t& count) {
+    const TIFFField* field = TIFFFindField(file, tag, TIFF_ANY);
+    const void* values = nullptr;
+    count = 0;
+    const bool good = field && TIFFFieldDataType(field) == type && TIFFFieldPassCount(field) &&
+                      TIFFFieldReadCount(field) == TIFF_VARIABLE2 && TIFFGetField(file, tag, &count, &values);
+    return good ? values : nullptr;
+}
+
 // GDAL's text of the value that means no data.
 void dropNoData(TIFF* file, Raster& raster) {
     std::uint32_t count = 0;
-    const char* text = nullptr;
-    if (!TIFFGetField(file, kNoData, &count, &text) || !text || count == 0) return;
+    const char* text = static_cast<const char*>(valuesOf(file, kNoData, TIFF_ASCII, count));
+    if (!text || count == 0) return;
     std::string word(text, strnlen(text, count));
     while (!word.empty() && word.back() == ' ') word.pop_back();
     float value = 0;
@@ -222,20 +232,18 @@ void dropNoData(TIFF* file, Raster& raster) {
 // GeoTIFF: the size of a pixel, in metres; degrees become metres at the image's middle.
 void readGeography(TIFF* file, Raster& raster) {
     std::uint32_t count = 0;
-    const double *scale = nullptr, *tie = nullptr;
-    if (!TIFFGetField(file, kPixelScale, &count, &scale) || count < 2 || !(scale[0] > 0) || !(scale[1] > 0))
-        return;
+    const double* scale = static_cast<const double*>(valuesOf(file, kPixelScale, TIFF_DOUBLE, count));
+    if (!scale || count < 2 || !(scale[0] > 0) || !(scale[1] > 0)) return;
     raster.spacing = {scale[0], scale[1], 1};
     raster.knownSpacing = true;
-    const std::uint16_t* keys = nullptr;
     bool degrees = false;
-    if (TIFFGetField(file, kGeoKeys, &count, &keys))
+    if (const auto* keys = static_cast<const std::uint16_t*>(valuesOf(file, kGeoKeys, TIFF_SHORT, count)))
         for (std::uint32_t i = 4; i + 3 < count; i += 4)
             degrees = degrees || (keys[i] == 1024 && keys[i + 3] == 2);
     if (!degrees) return;
     double latitude = 0;
-    if (TIFFGetField(file, kTiePoint, &count, &tie) && count >= 6)
-        latitude = tie[4] - (raster.size.y / 2.0 - tie[1]) * scale[1];
+    const double* tie = static_cast<const double*>(valuesOf(file, kTiePoint, TIFF_DOUBLE, count));
+    if (tie && count >= 6) latitude = tie[4] - (raster.size.y / 2.0 - tie[1]) * scale[1];
     constexpr double kMetresPerDegree = 111320, kRadians = 3.14159265358979323846 / 180;
     const double narrowing = std::abs(latitude) < 89 ? std::cos(latitude * kRadians) : 1;
     raster.spacing = {scale[0] * kMetresPerDegree * narrowing, scale[1] * kMetresPerDegree, 1};

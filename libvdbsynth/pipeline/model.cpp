@@ -138,6 +138,11 @@ bool isModelPath(const std::string& path) {
 
 void requireModelPath(const std::string& path) {
     if (isModelPath(path)) return;
+    for (const char* archive : {"zip", "npz", "7z", "rar", "tar", "tgz", "xz", "bz2", "zst"})
+        if (extensionOf(path) == archive)
+            throw Error(
+                ErrorCode::InvalidOption,
+                path + ": is an archive; unpack it and name a file of it (.gz alone is read as it is)");
     throw Error(ErrorCode::InvalidOption, path +
                                               ": unknown extension; models are .vdb, meshes .obj, .ply, "
                                               ".stl, .off, .gltf, .glb, .mesh, points .ply, .xyz, .pwn, "

@@ -310,6 +310,9 @@ class Words(CliTest):
         libraries = subprocess.run(["ldd", PROGRAM], capture_output=True, text=True, check=True).stdout
         for name in ("fftw", "gsl", "cgal", "readline", "gmp", "mpfr", "poppler"):
             self.assertNotIn(f"lib{name}", libraries)
+        # JBIG-KIT comes with Debian's libtiff alone, and goes with VDBSYNTH_TIFF=OFF (docs/decisions/003-libraries.md).
+        if "libtiff" not in libraries:
+            self.assertNotIn("libjbig", libraries)
 
 
 if __name__ == "__main__":

@@ -200,3 +200,12 @@ TEST_CASE("readRaster: errors name the file and what is wrong", "[io][error]") {
     CHECK(reading(folder.write("big.pgm", test::pgm(2000, 2000, 255, std::string(4000000, 'a'))), 1000000)
               .code == int(ErrorCode::Memory));
 }
+
+TEST_CASE("readRaster: a TIFF whose pixel size is of another type is read without it", "[io][regression]") {
+    const test::TemporaryFolder folder;
+    std::string bytes = test::tiff(2, 1, 16, 2, {"abcd"}, "-1", {3, 3, 0});
+    const std::size_t tag = bytes.find("\x0e\x83\x0c");  // 33550, doubles
+    REQUIRE(tag != std::string::npos);
+    bytes[tag + 2] = 1;  // bytes
+    CHECK_FALSE(readRaster(folder.write("a.tif", bytes)).knownSpacing);
+}

@@ -1,0 +1,11 @@
+// In the place of tiff_file.cpp in a build without libtiff.
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/io/raster_readers.h"
+
+namespace vdbsynth {
+
+Raster readTiff(const std::string& path, const std::string&, const RunContext&) {
+    throw Error(ErrorCode::Unusable, path + ": this build does not read TIFF; convert it to png, npy or exr");
+}
+
+}  // namespace vdbsynth

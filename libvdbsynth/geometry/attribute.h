@@ -24,9 +24,9 @@ struct AttributeColumn {
     std::vector<float> values;
 };
 
-/// Columns, all of one length, as attributes: red green blue (or r g b) are Cd, alpha is Alpha, s t (or u v, texture_u texture_v)
-/// are uv, NAME_x NAME_y NAME_z one vector. Colours in real numbers over 1 are taken to run to 255. What is
-/// not finite becomes 0.
+/// Columns, all of one length, as attributes: red green blue (or r g b) are Cd, alpha is Alpha, s t (or u v,
+/// texture_u texture_v) are uv, NAME_x NAME_y NAME_z one vector. Colours in real numbers over 1 are taken to
+/// run to 255. What is not finite becomes 0.
 Attributes groupColumns(std::vector<AttributeColumn> columns);
 
 /// Keeps the rows (vertices) that `kept` lists, in its order.

@@ -170,11 +170,12 @@ RasterField heightField(const std::string& name, const Raster& given, const Heig
     const double columns = raster.size.x * slab.pixelX / slab.voxel,
                  rows = raster.size.y * slab.pixelY / slab.voxel,
                  tall = (slab.high - slab.low + slab.base) / slab.voxel;
-    if (!(columns < 1e6 && rows < 1e6 && tall < 1e6))
+    if (!(columns < 1e6 && rows < 1e6 && tall < 1e6 && std::abs(slab.low / slab.voxel) < 1e8 &&
+          std::abs(slab.high / slab.voxel) < 1e8))
         throw Error(ErrorCode::Unusable, name + ": heights from " + rounded(slab.low) + " to " +
                                              rounded(slab.high) + " in voxels of " + rounded(slab.voxel) +
                                              " need over a million a side; use larger ones, or --height");
-    requireMemory(ctx, columns * rows * 8 * (60 + 0.016 * tall),
+    requireMemory(ctx, columns * rows * 8 * (60 + 0.016 * tall) + 2 * (columns + rows) * tall * 800,
                   name + " in voxels of " + rounded(slab.voxel),
                   "use a larger --voxel-size or a smaller --resolution");
     Stage stage(ctx, "heights to field", 1);
@@ -243,7 +244,7 @@ HeightImage topHeights(const BrickField& field, HeightPlane plane, const RunCont
                      --p[axes.height]) {
                     const float here = field.at(p);
                     if (here < 0) {
-                        const float t = above > 0 ? here / (here - above) : 0.5f;
+                        const float t = above >= 0 ? here / (here - above) : 0.5f;
                         image.heights[row * std::size_t(image.columns) + std::size_t(column)] =
                             float(p[axes.height]) + t;
                         break;

@@ -112,6 +112,9 @@ bool isOneOf(const std::vector<LabelRange>& labels, float value) {
 // The field of what has one of some labels.
 BrickField labelField(const std::string& name, const Raster& raster, const RasterRange& range,
                       const std::vector<LabelRange>& labels, const RunContext& ctx) {
+    if (range.maximum > 16777215 || range.minimum < -16777215)
+        throw Error(ErrorCode::Unusable, name + ": its values run to " + rounded(range.maximum) +
+                                             "; labels over 16777215 cannot be told apart, renumber them");
     if (std::none_of(raster.values.begin(), raster.values.end(),
                      [&](float value) { return isOneOf(labels, value); }))
         throw Error(ErrorCode::Unusable, "--labels: no sample of " + name +
@@ -211,6 +214,10 @@ RasterField volumeField(const std::string& name, const Raster& given, const Volu
     result.domain = IndexBox::fromSize(raster.size);
     const Vec3d ratio{smallest / raster.spacing.x, smallest / raster.spacing.y, smallest / raster.spacing.z};
     if (std::min({ratio.x, ratio.y, ratio.z}) < 1 - 1e-6) {
+        for (int axis = 0; axis < 3; ++axis)
+            if (!(raster.size[axis] / ratio[axis] < 1e8))
+                throw Error(ErrorCode::Unusable, name + ": its cells are " + rounded(1 / ratio[axis]) +
+                                                     " times as long as wide; resample it first");
         for (int axis = 0; axis < 3; ++axis)
             result.domain.max[axis] = std::max(0, int(std::lround((raster.size[axis] - 1) / ratio[axis])));
         requireMemory(ctx, double(result.domain.volume()) * 8, name + " in cubes",

@@ -439,6 +439,13 @@ int addFloats(tinygltf::Model& model, const float* values, std::size_t count, st
                     types[width], TINYGLTF_TARGET_ARRAY_BUFFER);
 }
 
+// JSON is UTF-8; names of other formats may be anything.
+std::string asciiOf(std::string name) {
+    for (char& c : name)
+        if (c < ' ' || c > '~') c = '_';
+    return name;
+}
+
 void addAttributes(tinygltf::Model& model, const Mesh& mesh, tinygltf::Primitive& primitive) {
     for (const Attribute& attribute : mesh.attributes) {
         const bool texture = attribute.name == "uv" && attribute.width == 2,
@@ -447,7 +454,7 @@ void addAttributes(tinygltf::Model& model, const Mesh& mesh, tinygltf::Primitive
         for (std::size_t i = 1; texture && i < values.size(); i += 2) values[i] = 1 - values[i];
         primitive.attributes[texture  ? "TEXCOORD_0"
                              : colour ? "COLOR_0"
-                                      : "_" + attribute.name] =
+                                      : "_" + asciiOf(attribute.name)] =
             addFloats(model, values.data(), mesh.points.size(), attribute.width);
     }
 }

@@ -66,6 +66,9 @@ Raster readJpeg(const std::string& path, const std::string& content, const RunCo
         return Error(ErrorCode::BadData, path + ": not a whole JPEG image: " + failure.text);
     };
     if (!readHeader(info, failure, content)) throw refuse();
+    if (info.num_components > 3)
+        throw Error(ErrorCode::BadData,
+                    path + ": is a JPEG image in CMYK, which is not read; convert it to RGB or grey");
     // An 8 x 8 block takes at least a few bits.
     if (double(info.image_width) * info.image_height > 2000.0 * double(content.size()))
         throw Error(ErrorCode::BadData, path + ": truncated");

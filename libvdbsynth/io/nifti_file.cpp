@@ -71,12 +71,12 @@ Header parseHeader(const std::string& path, const std::string& content) {
             throw Error(ErrorCode::BadData,
                         path + ": its voxels are in another file (.img); convert it to one .nii");
         readFields<std::int16_t, float, std::int16_t>(f, h, {40, 76, 70, 108, 112, 123, 252, 254, 256, 280});
-        h.offset = f.at<float>(108);
+        h.offset = std::max(352.0, f.at<float>(108));
         h.units = content[123];
     } else {
         readFields<std::int64_t, double, std::int32_t>(f, h,
                                                        {16, 104, 12, 168, 176, 500, 344, 348, 352, 400});
-        h.offset = f.at<std::int64_t>(168);
+        h.offset = std::max(544.0, f.at<std::int64_t>(168));
     }
     return h;
 }

@@ -48,13 +48,16 @@ void readVertexLines(const std::string& path, const std::string& content, Mesh& 
 // Gives every vertex its texture coordinates; a vertex that has several, at a seam, is there once for each.
 class SeamSplitter {
 public:
-    SeamSplitter(Mesh& mesh, const std::vector<tinyobj::real_t>& texture) : mMesh(mesh), mTexture(texture) {
+    SeamSplitter(const std::string& path, Mesh& mesh, const std::vector<tinyobj::real_t>& texture)
+        : mPath(path), mMesh(mesh), mTexture(texture) {
         mOf.assign(mesh.points.size(), kUnset);
     }
     std::uint32_t vertex(int point, int texture) {
         const std::size_t p = std::size_t(point);
-        if (p >= mOf.size() || texture < 0 || std::size_t(texture) * 2 + 1 >= mTexture.size())
-            return std::uint32_t(point);
+        if (point < 0 || p >= mOf.size())
+            throw Error(ErrorCode::BadData, mPath + ": a face uses vertex " + std::to_string(point) + " of " +
+                                                std::to_string(mOf.size()) + " (counting from 0)");
+        if (texture < 0 || std::size_t(texture) * 2 + 1 >= mTexture.size()) return std::uint32_t(point);
         if (mOf[p] == kUnset) mOf[p] = texture;
         if (mOf[p] == texture) return std::uint32_t(point);
         const auto [at, fresh] = mSplit.try_emplace({point, texture}, std::uint32_t(mMesh.points.size()));
@@ -85,6 +88,7 @@ public:
 
 private:
     static constexpr int kUnset = -1;
+    const std::string& mPath;
     Mesh& mMesh;
     const std::vector<tinyobj::real_t>& mTexture;
     std::vector<int> mOf;  // texture coordinates of each point
@@ -132,7 +136,7 @@ Mesh readObj(const std::string& path, const std::string& text) {
         problem = problem.substr(0, problem.find('\n'));
         throw Error(ErrorCode::BadData, path + ": " + (problem.empty() ? "not a valid OBJ file" : problem));
     }
-    SeamSplitter splitter(mesh, attributes.texcoords);
+    SeamSplitter splitter(path, mesh, attributes.texcoords);
     std::vector<std::uint32_t> corners;
     for (const tinyobj::shape_t& shape : shapes) {
         std::size_t at = 0;

@@ -59,7 +59,9 @@ Mesh readOff(const std::string& path, const std::string& content) {
         coloured = coloured && column.values.size() == mesh.points.size();
     if (coloured) {
         // Whole numbers run to 255, even where none is over 1.
-        for (AttributeColumn& column : colour) column.white = column.white == 1 ? 0 : 255;
+        bool real = false;
+        for (const AttributeColumn& column : colour) real = real || column.white == 1;
+        for (AttributeColumn& column : colour) column.white = real ? 0 : 255;
         mesh.attributes = groupColumns(std::move(colour));
     }
     std::vector<std::uint32_t> corners;

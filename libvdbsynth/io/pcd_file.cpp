@@ -197,19 +197,22 @@ Row rowOf(const std::string& path, const Header& header) {
     return row;
 }
 
-// A colour in the bits of a number: 0x00RRGGBB, written as a float or as a whole number.
-void appendColour(double value, bool isFloat, AttributeColumn* columns) {
-    std::uint32_t bits = 0;
-    const float number = float(value);
-    if (isFloat)
-        std::memcpy(&bits, &number, 4);
-    else if (value >= -2147483648.0 && value < 4294967296.0)
-        bits = std::uint32_t(std::int64_t(value));
+// A colour in the bits of a number, 0x00RRGGBB, the number being those bits.
+void appendColour(double value, AttributeColumn* columns) {
+    const bool fits = value >= -2147483648.0 && value < 4294967296.0;
+    const std::uint32_t bits = fits ? std::uint32_t(std::int64_t(value)) : 0;
     for (int c = 0; c < 3; ++c) columns[c].values.push_back(float(bits >> (16 - 8 * c) & 255));
 }
 
+// The bits of a number written as text, where the field holds colours as floats.
+double bitsOf(float value) {
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &value, 4);
+    return double(bits);
+}
+
 // Takes the numbers of one point.
-void appendPoint(const Header& header, Row& row, const std::vector<double>& numbers, PointCloud& cloud) {
+void appendPoint(Row& row, const std::vector<double>& numbers, PointCloud& cloud) {
     const auto vector = [&](std::size_t at) {
         return Vec3f{float(numbers[at]), float(numbers[at + 1]), float(numbers[at + 2])};
     };
@@ -218,7 +221,7 @@ void appendPoint(const Header& header, Row& row, const std::vector<double>& numb
     std::size_t column = 0;
     for (std::size_t slot = row.normals ? 6 : 3; slot < row.fields.size(); ++slot) {
         if (slot == row.colour) {
-            appendColour(numbers[slot], header.fields[row.fields[slot]].type == 'F', &row.columns[column]);
+            appendColour(numbers[slot], &row.columns[column]);
             column += 3;
         } else {
             row.columns[column++].values.push_back(float(numbers[slot]));
@@ -245,9 +248,12 @@ void readAscii(const std::string& path, const std::string& content, const Header
                 const bool isWhole = header.fields[f].type != 'F' && parseWhole(word, whole);
                 if (!isWhole && !parseReal(word, value))
                     scanner.fail("\"" + std::string(word.substr(0, 40)) + "\" is not a number");
-                numbers[std::size_t(slotOf[f])] = isWhole ? double(whole) : double(value);
+                const bool colour = row.colour > 0 && std::size_t(slotOf[f]) == row.colour;
+                numbers[std::size_t(slotOf[f])] = isWhole  ? double(whole)
+                                                  : colour ? bitsOf(value)
+                                                           : double(value);
             }
-        appendPoint(header, row, numbers, cloud);
+        appendPoint(row, numbers, cloud);
     }
 }
 
@@ -259,9 +265,12 @@ void readBinary(const Header& header, const Layout& layout, Row& row, PointCloud
             const std::int64_t at = layout.byField
                                         ? field.offset * header.points + p * field.size * field.count
                                         : p * header.rowBytes + field.offset;
-            numbers[slot] = numberAt(layout.bytes.data() + at, field);
+            Field plain = field;
+            // A float that is a colour must stay bits: as a number it may be one that is not quiet.
+            if (row.colour > 0 && slot == row.colour) plain.type = 'U';
+            numbers[slot] = numberAt(layout.bytes.data() + at, plain);
         }
-        appendPoint(header, row, numbers, cloud);
+        appendPoint(row, numbers, cloud);
     }
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdarg>
+#include <cstdlib>
 #include <memory>
 
 namespace vdbsynth {
@@ -56,6 +57,8 @@ struct Layout {
     std::uint32_t width = 0, height = 0;
     std::uint16_t bits = 1, samples = 1, format = SAMPLEFORMAT_UINT, planar = PLANARCONFIG_CONTIG;
     std::uint16_t photometric = PHOTOMETRIC_MINISBLACK, extras = 0;
+    bool alpha = false;  // the last of the extra samples says how opaque a pixel is
+    bool stack = false;  // one of several pages: what is stored counts, not what it looks like
     bool operator==(const Layout& o) const {
         return width == o.width && height == o.height && bits == o.bits && samples == o.samples &&
                format == o.format && planar == o.planar && photometric == o.photometric && extras == o.extras;
@@ -73,14 +76,19 @@ Layout layoutOf(TIFF* file) {
     TIFFGetField(file, TIFFTAG_PHOTOMETRIC, &layout.photometric);
     std::uint16_t* kinds = nullptr;
     TIFFGetFieldDefaulted(file, TIFFTAG_EXTRASAMPLES, &layout.extras, &kinds);
+    if (kinds && layout.extras > 0) {
+        const std::uint16_t last = kinds[layout.extras - 1];
+        layout.alpha = last == EXTRASAMPLE_ASSOCALPHA || last == EXTRASAMPLE_UNASSALPHA;
+    }
     return layout;
 }
 
 // The type of a sample that is read as it is stored; false for packed bits and colours that libtiff must
 // convert.
 bool plainType(const Layout& layout, SampleType& type) {
-    const bool grey =
-        layout.photometric == PHOTOMETRIC_MINISBLACK || layout.photometric == PHOTOMETRIC_MINISWHITE;
+    const bool grey = layout.photometric == PHOTOMETRIC_MINISBLACK ||
+                      layout.photometric == PHOTOMETRIC_MINISWHITE ||
+                      (layout.stack && layout.photometric == PHOTOMETRIC_PALETTE);
     if (!grey && layout.photometric != PHOTOMETRIC_RGB) return false;
     const bool real = layout.format == SAMPLEFORMAT_IEEEFP, integer = layout.format == SAMPLEFORMAT_INT;
     if (!real && !integer && layout.format != SAMPLEFORMAT_UINT && layout.format != SAMPLEFORMAT_VOID)
@@ -148,9 +156,10 @@ private:
                 const float* from = &row[std::size_t(x) * stored];
                 if (stored == 1 && plane < channels) pixel[plane] = from[0];
                 for (std::size_t c = 0; stored > 1 && c < std::size_t(channels); ++c) pixel[c] = from[c];
-                for (int c = 0; whiteIsZero && c < channels; ++c) pixel[c] = float(whiteOf(type)) - pixel[c];
-                // The last of the extra samples is alpha, the way pictures have it.
-                if (stored > std::size_t(channels) && layout.extras > 0 && from[stored - 1] == 0)
+                for (int c = 0; whiteIsZero && c < channels; ++c)
+                    if (stored > 1 || c == plane) pixel[c] = float(whiteOf(type)) - pixel[c];
+                // A pixel that is transparent has no data; of planes stored apart, opacity is not looked at.
+                if (stored > std::size_t(channels) && layout.alpha && from[stored - 1] == 0)
                     for (int c = 0; c < channels; ++c) pixel[c] = std::nanf("");
             }
         }
@@ -186,6 +195,12 @@ private:
             }
     }
 
+    // Of a stack of few bits the numbers that are stored: libtiff spreads them to 255.
+    static float unscaled(float value, const Layout& layout) {
+        if (!layout.stack || layout.bits >= 8) return value;
+        return std::round(value * float((1 << layout.bits) - 1) / 255);
+    }
+
     // Palettes, packed bits, JPEG inside TIFF and the like: libtiff makes colours of 8 bits.
     void readConverted(const Layout& layout, int channels, float* out) {
         char reason[1024];
@@ -198,7 +213,8 @@ private:
             fail();
         for (std::size_t i = 0; i < count; ++i)
             for (int c = 0; c < channels; ++c)
-                out[i * std::size_t(channels) + std::size_t(c)] = float(pixels[i] >> (8 * c) & 255);
+                out[i * std::size_t(channels) + std::size_t(c)] =
+                    unscaled(float(pixels[i] >> (8 * c) & 255), layout);
     }
 
     const std::string& mPath;
@@ -250,6 +266,21 @@ void readGeography(TIFF* file, Raster& raster) {
     raster.unit = "m";
 }
 
+// ImageJ writes stacks over 4 GB as one page with the others behind it, of which TIFF knows nothing.
+void refuseContiguousStack(TIFF* file, const std::string& path) {
+    const char* text = nullptr;
+    if (!TIFFGetField(file, TIFFTAG_IMAGEDESCRIPTION, &text) || !text) return;
+    const std::string words = text;
+    const std::size_t images = words.find("images=");
+    if (words.compare(0, 7, "ImageJ=") != 0 || images == std::string::npos) return;
+    const bool several = std::atoi(words.c_str() + images + 7) > 1 && TIFFNumberOfDirectories(file) == 1;
+    if (several)
+        throw Error(
+            ErrorCode::BadData,
+            path +
+                ": is an ImageJ stack of one page with others behind it; save it as npy or in several files");
+}
+
 int countPages(TIFF* file, const Layout& first, const std::string& path) {
     int pages = 1;
     while (TIFFReadDirectory(file)) {
@@ -276,9 +307,11 @@ Raster readTiff(const std::string& path, const std::string& content, const RunCo
                                    sizeOf, nullptr, nullptr),
                     TIFFClose);
     if (!file) throw Error(ErrorCode::BadData, path + ": not a TIFF image: " + lastFailure);
-    const Layout layout = layoutOf(file.get());
+    Layout layout = layoutOf(file.get());
     if (layout.samples == 0) throw Error(ErrorCode::BadData, path + ": has no samples");
+    refuseContiguousStack(file.get(), path);
     const int pages = countPages(file.get(), layout, path);
+    layout.stack = pages > 1;
     PageReader reader(path, file.get(), ctx);
     const int channels = reader.channels(layout);
     // The best of TIFF's packings make a thousandth.

@@ -112,6 +112,10 @@ LevelSet atVoxelSize(const std::string& path, const LevelSet& model, const Model
 LevelSet loadRaster(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
     const Raster raster = readRaster(path, ctx);
     const bool image = !raster.stack && raster.size.z == 1 && !options.imageAsVolume;
+    if (image && (options.volume.threshold || !options.volume.labels.empty()))
+        throw Error(ErrorCode::InvalidOption,
+                    std::string(options.volume.threshold ? "--threshold" : "--labels") + ": " + path +
+                        " is an image; convert --as volume takes it for a volume of one slice");
     HeightOptions heights = options.heights;
     heights.voxelSize = options.voxelSize;
     heights.resolution = options.resolution;

@@ -47,6 +47,7 @@ class Doors(CliTest):
         self.fails(2, "give one of them", "convert", "v.npy", "-o", "v.vdb", "--labels", "5", "--threshold", 5)
         self.fails(1, "values of v.npy run from 0 to 110", "convert", "v.npy", "-o", "v.vdb", "--threshold", 500)
         self.write("flat.npy", npy([0, 1, 1, 0] * 16, "(8, 8)"))
+        self.fails(2, "is an image; convert --as volume", "convert", "flat.npy", "-o", "f.vdb", "--threshold", 0.5)
         self.ok("convert", "flat.npy", "-o", "f.vdb", "--as", "volume")
         self.assertEqual(self.model("f.vdb")["domain"], "0,0,0,7,7,0")
 
@@ -86,6 +87,16 @@ class Attributes(CliTest):
         self.ok("convert", "out.ply", "-o", "points.ply", "--as", "points", "--resolution", 24)
         self.assertIn(b"property uchar red", self.read("points.ply")[:400])
         self.assertIn(b"property float heat", self.read("points.ply")[:400])
+
+    def test_info_welds_the_seams_of_a_texture(self):
+        rows = [f"v {x} {y} {z}" for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+        faces = ((1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4))
+        texture = [f"vt {i / 24} 0" for i in range(24)]
+        corners = iter(range(1, 25))
+        lines = ["f " + " ".join(f"{v}/{next(corners)}" for v in face) for face in faces]
+        self.write("uv.obj", "\n".join(rows + texture + lines) + "\n")
+        info = json.loads(self.ok("info", "uv.obj", "--json").stdout)
+        self.assertEqual((info["open_edges"], info["closed_manifold"]), (0, True))
 
     def test_grids_of_a_vdb_are_carried(self):
         script = ("import pyopenvdb as v\n"
@@ -127,6 +138,11 @@ class StandardStreams(CliTest):
         names = [json.loads(self.ok("info", f, "--json").stdout)["metadata"]["vdbsynth:inputs"] for f in ("a.vdb", "b.vdb")]
         self.assertEqual(json.loads(names[0])[0]["hash"], json.loads(names[1])[0]["hash"])
         self.assertEqual(json.loads(names[1])[0]["name"], "-.obj")
+        self.assertIn(b'"file": "-.obj"', self.piped(self.read("g.obj"), "info", "-.obj", "--json").stdout)
+        # A report replays the run, streams and all.
+        self.piped(self.read("g.obj"), "convert", "-.obj", "-o", "c.vdb", "--report", "c.json")
+        self.assertEqual(json.loads(self.read("c.json"))["options"]["inputs"], ["-.obj"])
+        self.assertEqual(self.piped(self.read("g.obj"), "convert", "--config", "c.json").returncode, 0)
 
     def test_errors(self):
         for content, words, code, says in (
@@ -134,6 +150,7 @@ class StandardStreams(CliTest):
                 (b"v 0 0 0", ["convert", "-", "-o", "a.vdb"], 2, b"does not tell what kind of file it is"),
                 (b"plx", ["convert", "-.ply", "-o", "a.vdb"], 3, b"-.ply:"),
                 (b"x", ["convert", "-.ply", "-o", "-"], 2, b"with -.EXT"),
+                (b"x", ["convert", "-.ply", "--as", "obj", "-o", "a.vdb"], 2, b"no input is -"),
                 (b"x", ["convert", "-.ply", "-.obj", "-o", "a.vdb"], 2, b"one input only")):
             result = self.piped(content, *words)
             self.assertEqual(result.returncode, code, result.stderr)

@@ -187,3 +187,35 @@ TEST_CASE("volumeField: of two values the larger is solid, of more one must be n
               heightField("a", rasterOf({2, 2, 1}, [](int x, int, int) { return 1e20f * float(x); }));
           }).code == int(ErrorCode::Unusable));
 }
+
+TEST_CASE("topHeights: a surface on a plane of voxels is where it is", "[grid][regression]") {
+    const BrickField field = test::fieldFrom({4, 4, 12}, [](const Index3& p) { return float(p.z) - 5; });
+    for (float height : topHeights(field, HeightPlane::XY).heights) CHECK(height == 5);
+    const BrickField between =
+        test::fieldFrom({4, 4, 12}, [](const Index3& p) { return float(p.z) - 5.25f; });
+    for (float height : topHeights(between, HeightPlane::XY).heights) CHECK(height == 5.25f);
+}
+
+TEST_CASE("heightField, volumeField: sizes that no lattice holds and labels that floats merge are refused",
+          "[grid][regression]") {
+    CHECK(test::thrownBy([&] {
+              heightField("a", rasterOf({4, 4, 1}, [](int, int, int) { return 3e9f; }));
+          }).code == int(ErrorCode::Unusable));
+    Raster thin = rasterOf({4, 4, 4}, [](int x, int, int) { return float(x); });
+    thin.spacing = {1, 1, 1e-9};
+    VolumeOptions options;
+    options.threshold = 1.5;
+    CHECK(test::contains(test::thrownBy([&] { volumeField("a", thin, options); }).message,
+                         "times as long as wide"));
+    options = {};
+    options.labels = {{16777217, 16777217}};
+    const Raster ids = rasterOf({4, 4, 4}, [](int x, int, int) { return 16777216.f + 2 * float(x); });
+    CHECK(test::contains(test::thrownBy([&] { volumeField("a", ids, options); }).message,
+                         "cannot be told apart"));
+    RunContext ctx;
+    ctx.maxMemory = 1000000000;
+    HeightOptions tall;
+    tall.height = 900000;
+    Raster small = rasterOf({33, 17, 1}, [](int x, int y, int) { return float(x * y); });
+    CHECK(test::thrownBy([&] { heightField("a", small, tall, ctx); }).code == int(ErrorCode::Memory));
+}

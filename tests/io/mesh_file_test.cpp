@@ -315,3 +315,28 @@ TEST_CASE("readMesh: colours that some vertices lack in part are passed over", "
     CHECK(readMesh(folder.write("a.off", "COFF 3 1 0\n0 0 0 x 1 1\n1 0 0 1 1 1\n0 1 0 1 1 1\n3 0 1 2\n"))
               .attributes.empty());
 }
+
+TEST_CASE("readMesh: an OBJ face beyond the vertices is refused at texture seams too", "[io][regression]") {
+    const test::TemporaryFolder folder;
+    const std::string text =
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 1\nf 1/1 2/1 3/1\nf 1/2 3/2 2/2\nf 1/1 2/1 5/1\n";
+    const test::Thrown thrown = test::thrownBy([&] { readMesh(folder.write("a.obj", text)); });
+    CHECK(thrown.code == int(ErrorCode::BadData));
+    CHECK(test::contains(thrown.message, "uses vertex 4 of 3"));
+}
+
+TEST_CASE("readMesh: COFF colours are real if any of them has a point", "[io][regression]") {
+    const test::TemporaryFolder folder;
+    const Mesh mesh = readMesh(
+        folder.write("a.off", "COFF 3 1 0\n0 0 0 1 0.5 0 1\n1 0 0 1 0.5 0 1\n0 1 0 0 1 0 1\n3 0 1 2\n"));
+    CHECK(findAttribute(mesh.attributes, "Cd")->values ==
+          std::vector<float>{1, 0.5f, 0, 1, 0.5f, 0, 0, 1, 0});
+}
+
+TEST_CASE("glTF: names of any bytes are written", "[io][regression]") {
+    const test::TemporaryFolder folder;
+    Mesh mesh = test::boxMesh({0, 0, 0}, {1, 1, 1});
+    mesh.attributes = {{"gr\xf6sse", 1, std::vector<float>(8, 2.f)}};
+    writeMesh(folder.path("a.glb"), MeshFormat::Glb, mesh);
+    CHECK(readMesh(folder.path("a.glb")).attributes[0].name == "gr_sse");
+}

@@ -131,3 +131,18 @@ TEST_CASE("readPoints: colours of rows and of PCD, and other fields", "[io][orac
     CHECK(findAttribute(pcd.cloud.attributes, "Cd")->values == std::vector<float>{1, 0.2f, 0});
     CHECK(findAttribute(pcd.cloud.attributes, "heat")->values == std::vector<float>{7});
 }
+
+TEST_CASE("readPoints: packed colours stored as floats keep their bits", "[io][regression]") {
+    const test::TemporaryFolder folder;
+    // Opaque, red 150: as a float a NaN that is not quiet.
+    const std::uint32_t colour = 0xff966432;
+    const float place[3] = {1, 2, 3};
+    std::string body(reinterpret_cast<const char*>(place), 12);
+    body.append(reinterpret_cast<const char*>(&colour), 4);
+    const std::string header =
+        "VERSION 0.7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 1\nHEIGHT 1\nPOINTS "
+        "1\nDATA binary\n";
+    const PointFile file = readPoints(folder.write("a.pcd", header + body));
+    CHECK(findAttribute(file.cloud.attributes, "Cd")->values[0] == Approx(150 / 255.0));
+    CHECK(findAttribute(file.cloud.attributes, "Cd")->values[2] == Approx(50 / 255.0));
+}

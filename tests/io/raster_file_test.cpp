@@ -209,3 +209,38 @@ TEST_CASE("readRaster: a TIFF whose pixel size is of another type is read withou
     bytes[tag + 2] = 1;  // bytes
     CHECK_FALSE(readRaster(folder.write("a.tif", bytes)).knownSpacing);
 }
+
+TEST_CASE("readRaster: TIFF bands that are no opacity make no holes, white may be zero", "[io][regression]") {
+    const test::TemporaryFolder folder;
+    std::string bytes = test::tiff(2, 1, 8, 1, {std::string("\xc8\x00", 2)});
+    const std::size_t photometric = bytes.find(std::string("\x06\x01\x03\x00\x01\x00\x00\x00\x01", 9));
+    REQUIRE(photometric != std::string::npos);
+    bytes[photometric + 8] = 0;
+    CHECK(readRaster(folder.write("a.tif", bytes)).values == std::vector<float>{55, 255});
+}
+
+TEST_CASE("readRaster: a palette stack gives the numbers that are stored", "[io][regression]") {
+    const test::TemporaryFolder folder;
+    std::string bytes = test::tiff(3, 1, 8, 1, {std::string("\0\1\4", 3), std::string("\4\1\0", 3)});
+    const std::string tag("\x06\x01\x03\x00\x01\x00\x00\x00\x01", 9);
+    for (std::size_t at = 0; (at = bytes.find(tag, at)) != std::string::npos; ++at) bytes[at + 8] = 3;
+    CHECK(readRaster(folder.write("a.tif", bytes)).values == std::vector<float>{0, 1, 4, 4, 1, 0});
+}
+
+TEST_CASE("readRaster: an ImageJ stack behind one page is refused", "[io][regression]") {
+    const test::TemporaryFolder folder;
+    std::string bytes = test::tiff(1, 1, 8, 1, {"a"}, "ImageJ=1.5\nimages=8\n");
+    const std::size_t tag = bytes.find("\x81\xa4\x02");  // 42113 becomes 270, the description
+    REQUIRE(tag != std::string::npos);
+    bytes[tag] = '\x0e';
+    bytes[tag + 1] = '\x01';
+    CHECK(test::contains(reading(folder.write("a.tif", bytes)).message, "ImageJ stack"));
+}
+
+TEST_CASE("readRaster: NIfTI voxels never begin in the header", "[io][regression]") {
+    const test::TemporaryFolder folder;
+    std::string bytes = test::nifti(2, 1, 1, std::string("\7\5", 2), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0});
+    const float none = 0;
+    std::memcpy(&bytes[108], &none, 4);
+    CHECK(readRaster(folder.write("a.nii", bytes)).values == std::vector<float>{7, 5});
+}

@@ -24,8 +24,11 @@ Json triple(const Index3& v) {
 }
 
 Json meshInfo(const std::string& path, const Run& run) {
-    const MeshSummary s = summarize(readMesh(path, run.context));
-    return Json{{"file", path},
+    Mesh mesh = readMesh(path, run.context);
+    // Vertices that a seam of the texture parts are one place of the surface.
+    if (findAttribute(mesh.attributes, "uv")) weldVertices(mesh);
+    const MeshSummary s = summarize(mesh);
+    return Json{{"file", run.withoutTemporaries(path)},
                 {"kind", "mesh"},
                 {"vertices", s.vertices},
                 {"faces", s.faces},
@@ -47,19 +50,16 @@ Json pointsInfo(const std::string& path, const Run& run) {
             low[axis] = std::min(low[axis], p[axis]);
             high[axis] = std::max(high[axis], p[axis]);
         }
-    return Json{{"file", path},
-                {"kind", "points"},
-                {"points", file.cloud.points.size()},
-                {"invalid_points", file.invalid},
-                {"normals", !file.cloud.normals.empty()},
-                {"bounds_min", triple(cast<double>(low))},
+    return Json{{"file", run.withoutTemporaries(path)},    {"kind", "points"},
+                {"points", file.cloud.points.size()},      {"invalid_points", file.invalid},
+                {"normals", !file.cloud.normals.empty()},  {"bounds_min", triple(cast<double>(low))},
                 {"bounds_max", triple(cast<double>(high))}};
 }
 
 Json rasterInfo(const std::string& path, const Run& run) {
     const Raster raster = readRaster(path, run.context);
     const RasterRange range = rangeOf(raster);
-    Json info{{"file", path},
+    Json info{{"file", run.withoutTemporaries(path)},
               {"kind", raster.stack || raster.size.z > 1 ? "volume" : "image"},
               {"size", triple(raster.size)},
               {"channels", raster.channels},
@@ -103,7 +103,7 @@ Json gridInfo(const GridSummary& s) {
 }
 
 Json vdbInfo(const std::string& path, Run& run) {
-    Json info{{"file", path}, {"kind", "vdb"}};
+    Json info{{"file", run.withoutTemporaries(path)}, {"kind", "vdb"}};
     Json grids = Json::array();
     const VdbContents contents = readVdb(path, run.context);
     Json metadata = Json::object();

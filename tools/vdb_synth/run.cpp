@@ -299,7 +299,8 @@ void Run::finish() {
             {"quality", impl.quality}};
         const std::string path = arguments.text("report");
         std::ofstream file(mOutputs->add(path));
-        file << report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+        file << withoutTemporaries(report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace))
+             << '\n';
         file.close();
         if (!file) throw Error(ErrorCode::Io, path + ": writing failed; the disk may be full");
     }

@@ -4,6 +4,7 @@
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/whole_file.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -17,6 +18,11 @@ namespace {
 // "-" or "-.EXT"; a file of that name is "./-.EXT".
 bool isStream(const std::string& path) {
     return path == "-" || path.compare(0, 2, "-.") == 0;
+}
+
+// True if --as names a kind of file, not what to write: "mesh" is the latter, MEDIT files are -.mesh.
+bool namesExtension(const std::string& as) {
+    return as != "mesh" && isKnownExtension(as);
 }
 
 void readAll(std::ofstream& file, std::string& start) {
@@ -56,7 +62,7 @@ std::string Streams::open(const std::string& name, const std::string& extension,
 void Streams::readInput(std::string& path, const Arguments& arguments) {
     std::string extension = path.substr(1);
     const std::string as = arguments.text("as");
-    if (extension.empty() && isKnownExtension(as)) extension = "." + as;
+    if (extension.empty() && namesExtension(as)) extension = "." + as;
     const std::string temporary = open(path, extension, false);
     std::string start;
     {
@@ -84,6 +90,12 @@ Arguments Streams::spooled(Arguments arguments, bool inputsAreOutputs) {
     int inputs = 0, outputs = 0;
     for (const std::string& path : arguments.inputs) (inputsAreOutputs ? outputs : inputs) += isStream(path);
     for (const std::string& path : arguments.all("output")) outputs += isStream(path);
+    const std::string as = arguments.text("as");
+    const bool plain =
+        std::find(arguments.inputs.begin(), arguments.inputs.end(), "-") != arguments.inputs.end();
+    if (namesExtension(as) && !plain)
+        throw Error(ErrorCode::InvalidOption,
+                    "--as " + as + ": says what kind of file standard input is, and no input is -");
     if (inputs > 1) throw Error(ErrorCode::InvalidOption, "standard input can be one input only");
     if (outputs > 1)
         throw Error(ErrorCode::InvalidOption, "--output: standard output can take one output only");

@@ -1,0 +1,36 @@
+#pragma once
+#include "libvdbsynth/measure/occupancy.h"
+
+#include <array>
+#include <vector>
+
+namespace vdbsynth {
+
+/// S2(r): the chance that two places r apart are both solid [torquato2002, section 2.1]. Only pairs inside
+/// the box count, so that boxes of any size agree in the mean.
+struct TwoPointCorrelation {
+    std::vector<double> radial;               ///< [reach + 1] over all directions
+    std::array<std::vector<double>, 3> axis;  ///< [reach + 1] along x, y, z
+};
+
+/// @param reach  longest r [voxels], at least 1, less than every side
+/// The radial value at r is the mean over displacements whose length rounds to r: all of them where these are
+/// at most 96 up to sign, else 96 spread evenly over the half sphere.
+/// @par Cost    O(48 * reach * voxels / 64)   @par Repeats same bits for any number of threads
+TwoPointCorrelation twoPointCorrelation(const Occupancy& solid, int reach, const RunContext& ctx = {});
+
+/// What lines of voxels along one axis say of a solid.
+struct LineStatistics {
+    /// [reach + 1] lineal path: the chance that a segment from one voxel to the r-th after it is all solid;
+    /// 0: one voxel [torquato2002, section 2.4]
+    std::vector<double> linealPath;
+    /// [reach + 1] share of the chords of that length; the last holds all longer ones. Chords cut by the box
+    /// do not count.
+    std::vector<double> chords;
+    double meanChord = 0;  ///< [voxels] solid voxels over chord beginnings, cut chords too, without bias
+};
+
+/// @param axis  0, 1, 2   @param reach  [voxels] at least 1   @par Repeats yes
+LineStatistics lineStatistics(const Occupancy& solid, int axis, int reach);
+
+}  // namespace vdbsynth

@@ -1,0 +1,51 @@
+#pragma once
+#include "libvdbsynth/geometry/mesh.h"
+#include "libvdbsynth/math/index_box.h"
+#include "libvdbsynth/measure/occupancy.h"
+
+namespace vdbsynth {
+
+// The Minkowski functionals: volume (Occupancy::count), area, integrated mean curvature, Euler
+// characteristic [ohser2009, chapter 3].
+
+/// What lies beyond a box of voxels.
+enum class Beyond {
+    Unknown,  ///< the texture goes on there: only what is decided inside the box counts
+    Void      ///< nothing: the box holds a whole object
+};
+
+/// Euler characteristic of the solid, its voxels taken for closed cubes (neighbours by faces, edges and
+/// corners belong together, those of the void by faces only): corners - edges + faces - cubes. Each corner of
+/// the voxel lattice brings in its shares, an edge half, a face a quarter, a cube an eighth of it. With
+/// Beyond::Unknown only the corners inside the box are summed, so that the mean over many boxes, divided by
+/// `eulerVolume`, is the density without bias.
+double eulerCharacteristic(const Occupancy& solid, Beyond beyond);
+/// Number of voxel corners that eulerCharacteristic summed over: what to divide by for a density.
+double eulerVolume(const Index3& size, Beyond beyond);
+
+/// A surface as what its parts bring in, each at its middle.
+struct SurfaceElements {
+    struct Element {
+        Vec3f middle;
+        float value;
+    };
+    std::vector<Element> areas;       ///< [triangles] area
+    std::vector<Element> curvatures;  ///< [edges] length times half the angle by which the normal turns there
+};
+
+/// @param mesh  closed, faces outward; edges of other than two faces bring in no curvature
+/// @par Cost    O(faces)   @par Repeats yes
+SurfaceElements surfaceElements(const Mesh& mesh);
+
+struct SurfaceFunctionals {
+    double area = 0;           ///< [voxels^2]
+    double meanCurvature = 0;  ///< [voxels] integral of the mean curvature (k1 + k2) / 2, convex positive
+};
+
+/// Area and integrated mean curvature in a box, the latter as the sum over edges of length times half the
+/// turn [cohensteiner2003, section 3].
+/// @param box  in voxel coordinates; it holds what lies within half a voxel around its voxels' centres
+/// @par Repeats yes
+SurfaceFunctionals surfaceFunctionals(const SurfaceElements& elements, const IndexBox& box);
+
+}  // namespace vdbsynth

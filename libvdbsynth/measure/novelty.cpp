@@ -1,0 +1,193 @@
+#include "libvdbsynth/measure/novelty.h"
+
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/measure/patch_distribution.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+namespace vdbsynth {
+namespace {
+
+constexpr int kStride = 4;
+constexpr double kPatches = 8000;
+constexpr double kCopyCost = 0.25 * 0.25;  // [voxels^2]
+
+bool earlier(const SourcedVoxel& a, const SourcedVoxel& b) {
+    return a.place < b.place;
+}
+
+Vec3f gradientAt(const BrickField& field, const Index3& p) {
+    Vec3f gradient;
+    for (int axis = 0; axis < 3; ++axis) {
+        Index3 low = p, high = p;
+        --low[axis];
+        ++high[axis];
+        gradient[axis] = (field.at(high) - field.at(low)) / 2;
+    }
+    return gradient;
+}
+
+class Runs {
+public:
+    explicit Runs(std::size_t count) : mParents(count) {
+        std::iota(mParents.begin(), mParents.end(), std::size_t(0));
+    }
+    std::size_t root(std::size_t i) {
+        while (mParents[i] != i) i = mParents[i] = mParents[mParents[i]];
+        return i;
+    }
+    void join(std::size_t a, std::size_t b) {
+        a = root(a);
+        b = root(b);
+        mParents[std::max(a, b)] = std::min(a, b);
+    }
+
+private:
+    std::vector<std::size_t> mParents;
+};
+
+struct Jumps {
+    double sum = 0;
+    std::size_t count = 0;
+    double mean() const { return count ? sum / double(count) : 0; }
+};
+
+void summarizeRuns(Runs& runs, std::size_t count, std::size_t looked, Novelty& novelty) {
+    std::vector<std::size_t> sizes(count, 0);
+    for (std::size_t i = 0; i < count; ++i) ++sizes[runs.root(i)];
+    double inRuns = 0, number = 0;
+    for (std::size_t size : sizes) {
+        if (size < 2) continue;
+        inRuns += double(size);
+        number += 1;
+        novelty.largestRun = std::max(novelty.largestRun, double(size));
+    }
+    novelty.verbatimShare = looked > 0 ? inRuns / double(looked) : 0;
+    novelty.meanRun = number > 0 ? inRuns / number : 0;
+}
+
+std::size_t differentSources(const std::vector<SourcedVoxel>& voxels) {
+    std::vector<std::tuple<std::int32_t, int, int, int>> sources;
+    sources.reserve(voxels.size());
+    for (const SourcedVoxel& v : voxels) sources.emplace_back(v.exemplar, v.source.x, v.source.y, v.source.z);
+    std::sort(sources.begin(), sources.end());
+    return std::size_t(std::unique(sources.begin(), sources.end()) - sources.begin());
+}
+
+// A box in the middle of `box` that is expected to hold no more than kPatches of the patches.
+IndexBox middleBox(const IndexBox& box, std::size_t patches) {
+    const double shrink = std::cbrt(std::min(1.0, kPatches / double(std::max<std::size_t>(1, patches))));
+    IndexBox middle = box;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int n = box.size()[axis];
+        const int keep = std::min(n, std::max(2 * kPatchSide, int(n * shrink)));
+        middle.min[axis] += (n - keep) / 2;
+        middle.max[axis] = middle.min[axis] + keep - 1;
+    }
+    return middle;
+}
+
+}  // namespace
+
+Novelty measureNovelty(std::vector<SourcedVoxel> voxels, std::size_t looked, std::size_t ofExemplar,
+                       const BrickField& result) {
+    Novelty novelty;
+    novelty.voxels = voxels.size();
+    if (voxels.empty()) return novelty;
+    std::sort(voxels.begin(), voxels.end(), earlier);
+    Runs runs(voxels.size());
+    std::vector<Vec3f> gradients(voxels.size());
+    for (std::size_t i = 0; i < voxels.size(); ++i) gradients[i] = gradientAt(result, voxels[i].place);
+    Jumps seams, inner;
+    for (int axis = 0; axis < 3; ++axis) {
+        // Neighbours of places in order are in order too, so one pass finds them all.
+        std::size_t next = 0;
+        for (std::size_t i = 0; i < voxels.size(); ++i) {
+            SourcedVoxel neighbour;
+            neighbour.place = voxels[i].place;
+            ++neighbour.place[axis];
+            while (next < voxels.size() && earlier(voxels[next], neighbour)) ++next;
+            if (next == voxels.size()) break;
+            if (voxels[next].place != neighbour.place) continue;
+            Index3 expected = voxels[i].source;
+            ++expected[axis];
+            const bool together =
+                voxels[next].source == expected && voxels[next].exemplar == voxels[i].exemplar;
+            Jumps& jumps = together ? inner : seams;
+            jumps.sum += double(length(gradients[i] - gradients[next]));
+            ++jumps.count;
+            if (together) runs.join(i, next);
+        }
+    }
+    summarizeRuns(runs, voxels.size(), looked, novelty);
+    novelty.exemplarUsed = ofExemplar > 0 ? double(differentSources(voxels)) / double(ofExemplar) : 0;
+    if (inner.count > 0 && seams.count > 0 && inner.sum > 0) novelty.seamRatio = seams.mean() / inner.mean();
+    if (inner.count + seams.count > 0)
+        novelty.seamShare = double(seams.count) / double(inner.count + seams.count);
+    return novelty;
+}
+
+double verifiedShare(const std::vector<SourcedVoxel>& voxels, const BrickField& result,
+                     const BrickField& exemplar) {
+    std::size_t good = 0;
+    for (const SourcedVoxel& v : voxels)
+        if (exemplar.box().contains(v.source) &&
+            std::abs(result.at(v.place) - exemplar.inside(v.source)) < 0.25f)
+            ++good;
+    return voxels.empty() ? 0 : double(good) / double(voxels.size());
+}
+
+std::size_t countNearSurface(const BrickField& field, const IndexBox& box, float reach,
+                             const RunContext& ctx) {
+    std::vector<std::size_t> counts(std::size_t(box.size().x), 0);
+    parallelFor(ctx, counts.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t plane = begin; plane < end; ++plane)
+            for (int y = box.min.y; y <= box.max.y; ++y)
+                for (int z = box.min.z; z <= box.max.z; ++z)
+                    counts[plane] += std::abs(field.inside({box.min.x + int(plane), y, z})) < reach;
+    });
+    return std::accumulate(counts.begin(), counts.end(), std::size_t(0));
+}
+
+MatchedSources sourcesByMatching(std::shared_ptr<const BrickField> result, const IndexBox& box,
+                                 std::shared_ptr<const BrickField> exemplar, const IndexBox& exemplarBox,
+                                 const RunContext& ctx) {
+    MatchedSources found;
+    PatchSourceOptions everywhere;
+    everywhere.box = box;
+    everywhere.limit = ~std::size_t(0);
+    everywhere.scales = 1;
+    PatchSource of = patchSource(result, everywhere, ctx);
+    PatchSourceOptions drawn;
+    drawn.box = exemplarBox;
+    drawn.scales = 1;
+    const PatchSource in = patchSource(exemplar, drawn, ctx);
+    if (of.scales.empty() || in.scales.empty()) return found;
+    PatchScale& queries = of.scales.front();
+    found.box = middleBox(box, queries.places.size() / (kStride * kStride * kStride));
+    const auto outside = [&](const Index3& p) {
+        return p.x % kStride || p.y % kStride || p.z % kStride ||
+               !found.box.contains(IndexBox::cube(p, kPatchSide));
+    };
+    queries.places.erase(std::remove_if(queries.places.begin(), queries.places.end(), outside),
+                         queries.places.end());
+    const PatchMatches matches =
+        matchPatches(queries, in.scales.front(), queries.places.size(), 2 * kCopyCost, ctx);
+    const int margin = (kPatchSide - kStride) / 2;
+    for (std::size_t i = 0; i < matches.from.size(); ++i)
+        for (int n = 0; n < kStride * kStride * kStride; ++n) {
+            const Index3 at{margin + n / (kStride * kStride), margin + n / kStride % kStride,
+                            margin + n % kStride};
+            const Index3 place = matches.from[i] + at;
+            if (std::abs(result->inside(place)) >= kNearSurface) continue;
+            ++found.looked;
+            if (matches.costs[i] < kCopyCost) found.voxels.push_back({place, matches.to[i] + at, 0});
+        }
+    return found;
+}
+
+}  // namespace vdbsynth

@@ -1,0 +1,278 @@
+#include "libvdbsynth/measure/patch_distribution.h"
+
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/base/random.h"
+#include "libvdbsynth/grid/pyramid.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace vdbsynth {
+namespace {
+
+constexpr int kSamples = kPatchSide * kPatchSide * kPatchSide;
+constexpr int kMiddle = kPatchSide / 4, kMiddleSide = kPatchSide / 2;
+constexpr std::size_t kDirections = 128;
+constexpr std::uint32_t kLotPurpose = 0x4c4f54, kDirectionPurpose = 0x535744;
+
+using Patch = std::array<float, kSamples>;
+
+void readPatch(const BrickField& field, const Index3& corner, Patch& patch) {
+    field.readBox(corner, {kPatchSide, kPatchSide, kPatchSide}, patch.data());
+}
+
+// `count` of the elements by lot (the first steps of a shuffle), in the order drawn; all if there are fewer.
+template <typename T>
+std::vector<T> drawn(std::vector<T> all, std::size_t count, std::uint64_t seed, std::uint32_t purpose) {
+    if (all.size() <= count) return all;
+    for (std::size_t i = 0; i < count; ++i) {
+        Random random(seed, i, purpose);
+        std::swap(all[i], all[i + random.below(std::uint32_t(all.size() - i))]);
+    }
+    all.resize(count);
+    return all;
+}
+
+// A word for each 64 corners of a row along z: set where the patch's middle has both signs.
+std::vector<std::uint64_t> mixedMiddles(const Occupancy& solid, int x, int y) {
+    const std::size_t words = solid.rowWords();
+    std::vector<std::uint64_t> any(words + 1, 0), all(words + 1, ~std::uint64_t(0)), mixed(words);
+    for (int dx = 0; dx < kMiddleSide; ++dx)
+        for (int dy = 0; dy < kMiddleSide; ++dy) {
+            const std::uint64_t* row = solid.row(x + kMiddle + dx, y + kMiddle + dy);
+            for (std::size_t w = 0; w < words; ++w) {
+                any[w] |= row[w];
+                all[w] &= row[w];
+            }
+        }
+    for (std::size_t w = 0; w < words; ++w) {
+        std::uint64_t some = 0, every = ~std::uint64_t(0);
+        for (int dz = kMiddle; dz < kMiddle + kMiddleSide; ++dz) {
+            some |= any[w] >> dz | any[w + 1] << (64 - dz);
+            every &= all[w] >> dz | all[w + 1] << (64 - dz);
+        }
+        mixed[w] = some & ~every;
+    }
+    return mixed;
+}
+
+std::vector<Index3> placesIn(const BrickField& field, const IndexBox& box, const RunContext& ctx) {
+    const Index3 last = box.max - Index3{kPatchSide - 1, kPatchSide - 1, kPatchSide - 1};
+    if (last.x < box.min.x || last.y < box.min.y || last.z < box.min.z) return {};
+    const Occupancy solid = Occupancy::fromField(field, ctx);
+    const std::size_t planes = std::size_t(last.x - box.min.x) + 1;
+    std::vector<std::vector<Index3>> found(planes);
+    parallelFor(ctx, planes, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t plane = begin; plane < end; ++plane) {
+            const int x = box.min.x + int(plane);
+            for (int y = box.min.y; y <= last.y; ++y) {
+                const std::vector<std::uint64_t> mixed = mixedMiddles(solid, x, y);
+                for (int z = box.min.z; z <= last.z; ++z)
+                    if (mixed[std::size_t(z) >> 6] >> (z & 63) & 1) found[plane].push_back({x, y, z});
+            }
+        }
+    });
+    std::vector<Index3> places;
+    for (const std::vector<Index3>& plane : found) places.insert(places.end(), plane.begin(), plane.end());
+    return places;
+}
+
+// Means of the eight octants: their squared distance, over eight, is at most the patches'.
+using Octants = std::array<float, 8>;
+
+Octants octantsOf(const Patch& patch) {
+    Octants means{};
+    std::size_t i = 0;
+    for (int x = 0; x < kPatchSide; ++x)
+        for (int y = 0; y < kPatchSide; ++y)
+            for (int z = 0; z < kPatchSide; ++z)
+                means[std::size_t((x >> 2) * 4 + (y >> 2) * 2 + (z >> 2))] += patch[i++];
+    for (float& mean : means) mean *= 8.f / kSamples;
+    return means;
+}
+
+double costOf(const Patch& a, const Patch& b) {
+    // Four sums side by side, in a fixed order.
+    std::array<float, 4> sums{};
+    for (std::size_t i = 0; i < kSamples; i += 4)
+        for (std::size_t k = 0; k < 4; ++k) sums[k] += (a[i + k] - b[i + k]) * (a[i + k] - b[i + k]);
+    return (double(sums[0]) + double(sums[1]) + double(sums[2]) + double(sums[3])) / kSamples;
+}
+
+struct Match {
+    Index3 place;
+    double cost = std::numeric_limits<double>::infinity();
+};
+
+// Octant means of all places, [8][places], so that bounds come for many places at once.
+using OctantTable = std::array<std::vector<float>, 8>;
+
+void boundAll(const Octants& mine, const OctantTable& table, std::vector<float>& bounds) {
+    std::fill(bounds.begin(), bounds.end(), 0.f);
+    for (std::size_t k = 0; k < 8; ++k) {
+        const float* means = table[k].data();
+        for (std::size_t i = 0; i < bounds.size(); ++i)
+            bounds[i] += (mine[k] - means[i]) * (mine[k] - means[i]);
+    }
+    for (float& bound : bounds) bound *= 0.9999f / 8;  // a margin for rounding
+}
+
+// The cheapest of the places that cost less than `limit`: the one of the least bound first, then all whose
+// bound is under its cost, in the order of their bounds.
+Match cheapest(const Patch& query, const PatchScale& to, const OctantTable& table, double limit,
+               std::vector<float>& bounds) {
+    boundAll(octantsOf(query), table, bounds);
+    Match best;
+    best.cost = limit;
+    Patch patch;
+    const auto look = [&](std::size_t i) {
+        readPatch(*to.field, to.places[i], patch);
+        const double cost = costOf(query, patch);
+        if (cost < best.cost || (cost == best.cost && to.places[i] < best.place)) best = {to.places[i], cost};
+    };
+    const auto first = std::min_element(bounds.begin(), bounds.end());
+    if (double(*first) >= limit) return best;
+    look(std::size_t(first - bounds.begin()));
+    std::vector<std::pair<float, std::uint32_t>> left;
+    for (std::size_t i = 0; i < bounds.size(); ++i)
+        if (double(bounds[i]) <= best.cost) left.emplace_back(bounds[i], std::uint32_t(i));
+    std::sort(left.begin(), left.end());
+    for (const auto& [bound, i] : left) {
+        if (double(bound) > best.cost) break;
+        look(i);
+    }
+    return best;
+}
+
+// Steps to the cheapest neighbouring corner while that is cheaper.
+Match downhill(const Patch& query, const BrickField& field, Match best) {
+    const Index3 last = field.box().max - Index3{kPatchSide - 1, kPatchSide - 1, kPatchSide - 1};
+    Patch patch;
+    for (bool moved = true; moved && best.cost > 0;) {
+        moved = false;
+        const Index3 centre = best.place;
+        for (int n = 0; n < 27; ++n) {
+            const Index3 p = centre + Index3{n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1};
+            if (p == centre || !IndexBox{field.box().min, last}.contains(p)) continue;
+            readPatch(field, p, patch);
+            const double cost = costOf(query, patch);
+            if (cost < best.cost) {
+                best = {p, cost};
+                moved = true;
+            }
+        }
+    }
+    return best;
+}
+
+// The area between two sorted samples' quantile functions.
+double quantileDistance(const std::vector<float>& a, const std::vector<float>& b) {
+    double area = 0, at = 0;
+    for (std::size_t i = 0, k = 0; i < a.size() && k < b.size();) {
+        const double nextA = double(i + 1) / double(a.size()), nextB = double(k + 1) / double(b.size());
+        const double next = std::min(nextA, nextB);
+        area += (next - at) * std::abs(double(a[i]) - double(b[k]));
+        at = next;
+        if (nextA <= next) ++i;
+        if (nextB <= next) ++k;
+    }
+    return area;
+}
+
+std::vector<float> projected(const std::vector<Patch>& patches, const Patch& direction) {
+    std::vector<float> result(patches.size());
+    for (std::size_t p = 0; p < patches.size(); ++p) {
+        std::array<float, 4> sums{};
+        for (std::size_t i = 0; i < kSamples; i += 4)
+            for (std::size_t k = 0; k < 4; ++k) sums[k] += patches[p][i + k] * direction[i + k];
+        result[p] = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+    }
+    std::sort(result.begin(), result.end());
+    return result;
+}
+
+std::vector<Patch> patchesOf(const PatchScale& scale, std::size_t count, const RunContext& ctx) {
+    const std::vector<Index3> places = drawn(scale.places, count, ctx.seed, kLotPurpose + 1);
+    std::vector<Patch> patches(places.size());
+    parallelFor(ctx, places.size(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) readPatch(*scale.field, places[i], patches[i]);
+    });
+    return patches;
+}
+
+}  // namespace
+
+PatchSource patchSource(std::shared_ptr<const BrickField> field, const PatchSourceOptions& options,
+                        const RunContext& ctx) {
+    PatchSource source;
+    IndexBox box = options.box;
+    for (int scale = 0; scale < options.scales; ++scale) {
+        if (scale > 0) {
+            field = std::make_shared<const BrickField>(halved(*field, ctx));
+            // Only coarse samples whose voxels all lie within.
+            box = {{(box.min.x + 1) >> 1, (box.min.y + 1) >> 1, (box.min.z + 1) >> 1},
+                   {(box.max.x - 1) >> 1, (box.max.y - 1) >> 1, (box.max.z - 1) >> 1}};
+        }
+        std::vector<Index3> places = placesIn(*field, box, ctx);
+        if (places.empty()) break;
+        source.scales.push_back({field, drawn(std::move(places), options.limit, ctx.seed, kLotPurpose)});
+    }
+    return source;
+}
+
+double slicedWasserstein(const PatchScale& a, const PatchScale& b, std::size_t count, const RunContext& ctx) {
+    const std::vector<Patch> ofA = patchesOf(a, count, ctx), ofB = patchesOf(b, count, ctx);
+    std::vector<double> distances(kDirections);
+    parallelFor(ctx, kDirections, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t d = begin; d < end; ++d) {
+            Random random(ctx.seed, d, kDirectionPurpose);
+            Patch direction;
+            double squared = 0;
+            for (float& component : direction) {
+                component = float(random.normal());
+                squared += double(component) * double(component);
+            }
+            for (float& component : direction) component /= float(std::sqrt(squared));
+            distances[d] = quantileDistance(projected(ofA, direction), projected(ofB, direction));
+        }
+    });
+    double sum = 0;
+    for (double distance : distances) sum += distance;
+    return sum / double(kDirections);
+}
+
+PatchMatches matchPatches(const PatchScale& from, const PatchScale& to, std::size_t count, double limit,
+                          const RunContext& ctx) {
+    OctantTable table;
+    for (std::vector<float>& means : table) means.resize(to.places.size());
+    parallelFor(ctx, to.places.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        Patch patch;
+        for (std::size_t i = begin; i < end; ++i) {
+            readPatch(*to.field, to.places[i], patch);
+            const Octants octants = octantsOf(patch);
+            for (std::size_t k = 0; k < 8; ++k) table[k][i] = octants[k];
+        }
+    });
+    PatchMatches result;
+    result.from = drawn(from.places, count, ctx.seed, kLotPurpose + 2);
+    result.to.resize(result.from.size());
+    result.costs.resize(result.from.size());
+    parallelFor(ctx, result.from.size(), 8, [&](std::size_t begin, std::size_t end) {
+        Patch query;
+        std::vector<float> bounds(to.places.size());
+        for (std::size_t i = begin; i < end; ++i) {
+            readPatch(*from.field, result.from[i], query);
+            Match best = cheapest(query, to, table, limit, bounds);
+            if (best.cost < limit) best = downhill(query, *to.field, best);
+            result.to[i] = best.place;
+            result.costs[i] = best.cost;
+        }
+    });
+    for (double cost : result.costs) result.mean += cost;
+    result.mean /= double(std::max<std::size_t>(1, result.costs.size()));
+    return result;
+}
+
+}  // namespace vdbsynth

@@ -1,0 +1,70 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/grid/brick_field.h"
+#include "libvdbsynth/math/index_box.h"
+#include "libvdbsynth/measure/occupancy.h"
+
+#include <memory>
+#include <vector>
+
+namespace vdbsynth {
+
+inline constexpr int kPatchSide = 8;    ///< [samples]
+inline constexpr int kPatchScales = 3;  ///< full, half, a quarter of the resolution
+
+/// Patches of a field near its surface, at three scales: cubes of 8^3 samples whose middle 4^3 has both
+/// signs. The coarser scales are means over 2^3 and 4^3 voxels of the clamped distances, so all values are
+/// voxels of the finest.
+struct PatchScale {
+    std::shared_ptr<const BrickField> field;
+    std::vector<Index3> places;  ///< minimum corners, in a fixed order
+};
+struct PatchSource {
+    std::vector<PatchScale> scales;  ///< [kPatchScales], fewer if the box is too small for the coarser
+};
+
+struct PatchSourceOptions {
+    IndexBox box;                ///< [voxels of the field] patches lie within it
+    std::size_t limit = 100000;  ///< most places a scale; where there are more, that many by lot
+    int scales = kPatchScales;   ///< 1..kPatchScales
+};
+
+/// @param field  [voxels] clamped to the band, box beginning at 0
+/// @par Repeats same bits for (field, options, ctx.seed), any number of threads
+PatchSource patchSource(std::shared_ptr<const BrickField> field, const PatchSourceOptions& options,
+                        const RunContext& ctx = {});
+
+/// Sliced Wasserstein distance of two sets of patches [elnekave2022, Eq. 3]: the mean over 128 random
+/// directions of the distance between the two sets of projections, each of up to `count` patches by lot, that
+/// is, the area between their quantile functions. [voxels] Both sets must not be empty.
+/// @par Repeats same bits for ctx.seed, any number of threads
+double slicedWasserstein(const PatchScale& a, const PatchScale& b, std::size_t count,
+                         const RunContext& ctx = {});
+
+/// How much like the patches of `to` those of `from` are: the mean over up to `count` patches of `from` by
+/// lot of the least mean squared difference [voxels^2] to a patch of `to`: coherence of a result with its
+/// exemplar and, with the two exchanged, completeness [simakov2008, Eq. 1]. The least is exact over the
+/// places of `to`; from there it goes on downhill over neighbouring corners, so that a verbatim copy costs 0
+/// though its place was not drawn. A patch whose best costs `limit` or more is given that cost and no place.
+/// @par Repeats same bits for ctx.seed, any number of threads
+struct PatchMatches {
+    double mean = 0;            ///< [voxels^2]
+    std::vector<Index3> from;   ///< [matches] corners, the order of the lot
+    std::vector<Index3> to;     ///< [matches]
+    std::vector<double> costs;  ///< [matches] mean squared difference
+};
+PatchMatches matchPatches(const PatchScale& from, const PatchScale& to, std::size_t count, double limit,
+                          const RunContext& ctx = {});
+
+/// Local-patch similarity of occupancies [wu2022, section 5]: patches of 11^3 voxels, every fifth voxel, of
+/// boxes padded by 5 void voxels, whose middle 3^3 has both kinds; of up to 1000 of `other` by lot the share
+/// whose best match among all of `reference` is over 0.95.
+struct LocalPatches {
+    double shareIoU = 0;    ///< LP-IoU
+    double shareScore = 0;  ///< LP-F, the F-score in place of the intersection over union
+    double meanIoU = 0;     ///< mean of the best intersection over union
+};
+LocalPatches localPatchSimilarity(const Occupancy& reference, const Occupancy& other,
+                                  const RunContext& ctx = {});
+
+}  // namespace vdbsynth

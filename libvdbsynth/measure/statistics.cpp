@@ -1,0 +1,118 @@
+#include "libvdbsynth/measure/statistics.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/measure/correlation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vdbsynth {
+namespace {
+
+Statistic number(const char* name, int power, double value) {
+    return {name, power, false, {value}};
+}
+
+void append(std::vector<double>& to, const std::vector<double>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+}
+
+// Running sums: distributions are compared as such, since a peak one voxel aside is near, not elsewhere.
+void appendSums(std::vector<double>& to, const std::vector<double>& shares) {
+    double sum = 0;
+    for (double share : shares) to.push_back(sum += share);
+}
+
+void addSurface(const MeasuredModel& model, const IndexBox& box, std::vector<Statistic>& all) {
+    const bool whole = model.beyond == Beyond::Void;
+    // Within a voxel of a domain's face the caps bend the surface; and they lie beyond it.
+    IndexBox inner = box;
+    for (int axis = 0; axis < 3; ++axis) {
+        inner.min[axis] += whole ? -8 : box.min[axis] == model.counted.min[axis] ? 1 : 0;
+        inner.max[axis] -= whole ? -8 : box.max[axis] == model.counted.max[axis] ? 1 : 0;
+    }
+    const SurfaceFunctionals surface = surfaceFunctionals(model.elements, inner);
+    const double volume = whole ? double(box.volume()) : double(inner.volume());
+    all.push_back(number("surface area per volume", -1, surface.area / volume));
+    all.push_back(number("mean curvature per volume", -2, surface.meanCurvature / volume));
+}
+
+void addLines(const Occupancy& solid, int reach, const char* chordName, const char* curveName,
+              std::vector<Statistic>& all, std::vector<double>* linealPath) {
+    Statistic mean{chordName, 1, false, {}}, chords{curveName, 0, true, {}};
+    for (int axis = 0; axis < 3; ++axis) {
+        const LineStatistics lines = lineStatistics(solid, axis, reach);
+        mean.values.push_back(lines.meanChord);
+        appendSums(chords.values, lines.chords);
+        if (linealPath) append(*linealPath, lines.linealPath);
+    }
+    all.push_back(mean);
+    all.push_back(chords);
+}
+
+void addThickness(const Thickness& thickness, const IndexBox& box, int reach, const std::string& name,
+                  std::vector<Statistic>& all) {
+    const ThicknessSummary summary = summarize(thickness, box, reach);
+    all.push_back({name + " mean", 1, false, {summary.mean}});
+    all.push_back({name + " deviation", 1, false, {summary.deviation}});
+    Statistic curve{name + " distribution", 0, true, {}};
+    appendSums(curve.values, summary.share);
+    all.push_back(curve);
+}
+
+}  // namespace
+
+void prepare(MeasuredModel& model, double limit, const RunContext& ctx) {
+    model.elements = surfaceElements(model.surface);
+    model.solid = Occupancy::fromField(*model.field, ctx);
+    model.thickness = localThickness(*model.field, model.band, Phase::Solid, limit, ctx);
+    if (model.beyond == Beyond::Unknown)
+        model.pores = localThickness(*model.field, model.band, Phase::Void, limit, ctx);
+}
+
+std::vector<Statistic> measureStatistics(const MeasuredModel& model, const IndexBox& box, int reach,
+                                         const RunContext& ctx) {
+    const bool whole = model.beyond == Beyond::Void;
+    const Occupancy solid = model.solid.window(box);
+    std::vector<Statistic> all;
+    all.push_back(number("volume fraction", 0, double(solid.count()) / solid.volume()));
+    addSurface(model, box, all);
+    const double corners = whole ? double(box.volume()) : eulerVolume(box.size(), Beyond::Unknown);
+    const double euler = eulerCharacteristic(whole ? model.solid : solid, model.beyond);
+    all.push_back(number("Euler characteristic per volume", -3, euler / corners));
+    addThickness(model.thickness, box, reach, "local thickness", all);
+    if (!model.pores.diameter.empty()) addThickness(model.pores, box, reach, "pore size", all);
+    Statistic path{"lineal path", 0, true, {}};
+    addLines(solid, reach, "mean chord", "chord lengths", all, &path.values);
+    addLines(solid.complement(), reach, "mean chord of void", "chord lengths of void", all, nullptr);
+    all.push_back(path);
+    const TwoPointCorrelation correlation = twoPointCorrelation(solid, reach, ctx);
+    all.push_back({"two-point correlation", 0, true, correlation.radial});
+    Statistic axes{"two-point correlation by axis", 0, true, {}};
+    for (const std::vector<double>& curve : correlation.axis) append(axes.values, curve);
+    all.push_back(axes);
+    return all;
+}
+
+Topology measureTopology(const MeasuredModel& model) {
+    const bool whole = model.beyond == Beyond::Void;
+    const Occupancy solid = whole ? model.solid : model.solid.window(model.counted);
+    Topology topology;
+    topology.solid = findComponents(solid, Neighbours::All);
+    topology.empty = findComponents(solid.complement(), Neighbours::Faces);
+    topology.enclosed = double(topology.empty.interior.size());
+    const double euler = eulerCharacteristic(solid, model.beyond);
+    topology.eulerCharacteristic =
+        whole ? euler : euler / eulerVolume(solid.size(), model.beyond) * solid.volume();
+    if (whole) topology.tunnels = double(topology.solid.sizes.size()) + topology.enclosed - euler;
+    return topology;
+}
+
+double statisticDistance(const Statistic& a, const Statistic& b) {
+    const std::size_t n = std::min(a.values.size(), b.values.size());
+    double squares = 0;
+    for (std::size_t i = 0; i < n; ++i) squares += (a.values[i] - b.values[i]) * (a.values[i] - b.values[i]);
+    return n == 0 ? 0 : std::sqrt(squares / double(n));
+}
+
+}  // namespace vdbsynth

@@ -1,0 +1,20 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/geometry/mesh.h"
+
+namespace vdbsynth {
+
+/// How far two surfaces are apart, both ways [aspert2002].
+struct SurfaceDistance {
+    double mean = 0;       ///< mean distance of the vertices of each, weighted by area, the larger way
+    double rootMean = 0;   ///< the same of squares, under a root
+    double hausdorff = 0;  ///< the largest distance of any vertex
+};
+
+/// Distances run from each vertex to the nearest point of the faces around the other mesh's 8 nearest
+/// vertices, so meshes should be about as fine as each other, as two zero levels are.
+/// @param a, b  in one space and unit, with at least one face each
+/// @par Cost    O(vertices log vertices)   @par Repeats same bits for any number of threads
+SurfaceDistance surfaceDistance(const Mesh& a, const Mesh& b, const RunContext& ctx = {});
+
+}  // namespace vdbsynth

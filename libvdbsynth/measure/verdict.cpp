@@ -1,0 +1,71 @@
+#include "libvdbsynth/measure/verdict.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vdbsynth {
+namespace {
+
+// Nearest rank: the smallest of the values that three quarters of them do not exceed.
+double upperQuartile(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values.empty() ? 0 : values[(values.size() * 3 + 3) / 4 - 1];
+}
+
+double rootMeanSquare(const std::vector<double>& values, double divisor) {
+    double squares = 0;
+    for (double value : values) squares += value * value;
+    return std::sqrt(squares / divisor);
+}
+
+}  // namespace
+
+std::vector<IndexBox> subVolumes(const IndexBox& box, const std::array<bool, 3>& stationary, int shortest) {
+    const int axes = int(std::count(stationary.begin(), stationary.end(), true));
+    const int parts = axes == 3 ? 2 : axes == 2 ? 3 : axes == 1 ? 8 : 0;
+    if (parts == 0) return {};
+    Index3 count{1, 1, 1}, side = box.size();
+    for (int axis = 0; axis < 3; ++axis)
+        if (stationary[std::size_t(axis)]) {
+            count[axis] = parts;
+            side[axis] /= parts;
+        }
+    if (std::min({side.x, side.y, side.z}) < shortest) return {};
+    std::vector<IndexBox> boxes;
+    for (int x = 0; x < count.x; ++x)
+        for (int y = 0; y < count.y; ++y)
+            for (int z = 0; z < count.z; ++z) {
+                const Index3 low = box.min + Index3{x * side.x, y * side.y, z * side.z};
+                boxes.push_back({low, low + side - Index3{1, 1, 1}});
+            }
+    return boxes;
+}
+
+Verdict judge(const std::vector<Statistic>& parts, const Statistic& result) {
+    Statistic mean = parts.front();
+    for (std::size_t i = 0; i < mean.values.size(); ++i) {
+        double sum = 0;
+        for (const Statistic& part : parts) sum += part.values[i];
+        mean.values[i] = sum / double(parts.size());
+    }
+    std::vector<double> distances;
+    for (const Statistic& part : parts) distances.push_back(statisticDistance(part, mean));
+    Verdict verdict;
+    verdict.name = result.name;
+    verdict.mean = mean.values.size() == 1 ? mean.values.front() : 0;
+    verdict.sigma = rootMeanSquare(distances, double(parts.size()) - 1);
+    verdict.quartile = upperQuartile(distances);
+    verdict.distance = statisticDistance(result, mean);
+    return verdict;
+}
+
+Verdict judgeDistance(const std::string& name, const std::vector<double>& parts, double result) {
+    Verdict verdict;
+    verdict.name = name;
+    verdict.sigma = rootMeanSquare(parts, double(parts.size()));
+    verdict.quartile = upperQuartile(parts);
+    verdict.distance = result;
+    return verdict;
+}
+
+}  // namespace vdbsynth

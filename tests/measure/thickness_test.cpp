@@ -1,0 +1,144 @@
+#include "libvdbsynth/measure/thickness.h"
+
+#include <catch2/catch.hpp>
+
+#include "tests/support/makers.h"
+
+#include <numeric>
+
+using namespace vdbsynth;
+
+namespace {
+
+BrickField distances(const Index3& size, float band, const std::function<double(const Vec3d&)>& distance) {
+    return test::fieldFrom(size, [&](const Index3& p) {
+        return float(
+            std::clamp(distance({double(p.x), double(p.y), double(p.z)}), -double(band), double(band)));
+    });
+}
+
+ThicknessSummary solidSummary(const BrickField& field, double limit = 1e9) {
+    return summarize(localThickness(field, 3, Phase::Solid, limit), field.box(), 40);
+}
+
+}  // namespace
+
+TEST_CASE("distancesWithin: within a third of a voxel of a ball's true distances", "[measure][oracle]") {
+    const Vec3d centre{31.4, 30.8, 32.1};
+    const BrickField field =
+        distances({64, 64, 64}, 3, [&](const Vec3d& p) { return length(p - centre) - 20; });
+    const Distances inside = distancesWithin(field, 1, 3, Phase::Solid);
+    const Distances outside = distancesWithin(field, 1, 3, Phase::Void);
+    double worst = 0, sum = 0;
+    for (int x = 0; x < 64; ++x)
+        for (int y = 0; y < 64; ++y)
+            for (int z = 0; z < 64; ++z) {
+                const double truth = length(Vec3d{double(x), double(y), double(z)} - centre) - 20;
+                const double here = double(truth < 0 ? inside.at({x, y, z}) : outside.at({x, y, z}));
+                worst = std::max(worst, std::abs(here - std::abs(truth)));
+                sum += std::abs(here - std::abs(truth));
+                CHECK(double(truth < 0 ? outside.at({x, y, z}) : inside.at({x, y, z})) == 0);
+            }
+    CHECK(worst < 0.34);
+    CHECK(sum / (64 * 64 * 64) < 0.05);
+}
+
+TEST_CASE("distancesWithin: the nearest voxel is the nearest", "[measure][oracle]") {
+    // Feet are where single voxels of a surface say; the brute search is over the same feet.
+    const Index3 size{17, 13, 15};
+    const BrickField solid = test::fieldFrom(size, [](const Index3& p) {
+        return Random(2, std::uint64_t((p.x * 50 + p.y) * 50 + p.z)).uniform() < 0.02 ? 0.f : 3.f;
+    });
+    const Distances outside = distancesWithin(solid, 1, 0, Phase::Void);
+    for (int n = 0; n < size.x * size.y * size.z; ++n) {
+        const Index3 p{n / size.z / size.y, n / size.z % size.y, n % size.z};
+        double best = 1e9;
+        for (int m = 0; m < size.x * size.y * size.z; ++m) {
+            const Index3 q{m / size.z / size.y, m / size.z % size.y, m % size.z};
+            const Vec3d apart{double(p.x - q.x), double(p.y - q.y), double(p.z - q.z)};
+            if (solid.at(q) == 0) best = std::min(best, length(apart));
+        }
+        REQUIRE(double(outside.at(p)) == Approx(best).margin(1e-4));
+    }
+    const Distances nothing = distancesWithin(BrickField(solid.box(), -3.f), 1, 0, Phase::Solid);
+    CHECK(nothing.at({3, 3, 3}) == 17);
+}
+
+TEST_CASE("localThickness: a ball is as thick as its diameter, everywhere", "[measure][oracle]") {
+    for (double radius : {5.0, 11.5, 26.0}) {  // the last one is drawn on a coarser lattice
+        const BrickField field = distances({64, 64, 64}, 3, [&](const Vec3d& p) {
+            return length(p - Vec3d{31.6, 32.2, 31.9}) - radius;
+        });
+        const ThicknessSummary summary = solidSummary(field);
+        CHECK(summary.largest == Approx(2 * radius).margin(1.0));
+        CHECK(summary.mean == Approx(2 * radius).margin(1.0));
+        CHECK(summary.deviation < 0.06 * radius);
+    }
+}
+
+TEST_CASE("localThickness: slabs, cylinders and the space between", "[measure][oracle]") {
+    const BrickField slab =
+        distances({60, 60, 60}, 3, [](const Vec3d& p) { return std::abs(p.z - 29.7) - 6.3; });
+    CHECK(solidSummary(slab).mean == Approx(12.6).margin(1.0));
+    CHECK(solidSummary(slab).deviation < 0.3);
+    const BrickField cylinder =
+        distances({64, 64, 40}, 3, [](const Vec3d& p) { return std::hypot(p.x - 31.7, p.y - 32.2) - 13.2; });
+    CHECK(solidSummary(cylinder).mean == Approx(26.4).margin(1.0));
+    const BrickField gap =
+        distances({60, 60, 60}, 3, [](const Vec3d& p) { return 5.2 - std::abs(p.z - 29.7); });
+    CHECK(summarize(localThickness(gap, 3, Phase::Void, 1e9), gap.box(), 40).mean ==
+          Approx(10.4).margin(1.0));
+}
+
+TEST_CASE("localThickness: at half the resolution the same within a voxel and a half", "[measure][oracle]") {
+    const BrickField slab =
+        distances({60, 60, 60}, 3, [](const Vec3d& p) { return std::abs(p.z - 29.7) - 6.3; });
+    const Thickness half = localThickness(slab, 3, Phase::Solid, 30000);
+    CHECK(half.coarsening == 2);
+    CHECK(summarize(half, slab.box(), 40).mean == Approx(12.6).margin(1.5));
+    const Thickness quarter = localThickness(slab, 3, Phase::Solid, 4000);
+    CHECK(quarter.coarsening == 4);
+    CHECK(summarize(quarter, slab.box(), 40).mean == Approx(12.6).margin(3));
+}
+
+TEST_CASE("localThickness: is the largest ball that holds the voxel, by search over all balls",
+          "[measure][oracle]") {
+    const BrickField field = test::ballsField({26, 24, 25}, 8, 3.f, 7);
+    const Thickness thickness = localThickness(field, 3, Phase::Solid, 1e9);
+    const Distances inside = distancesWithin(field, 1, 3, Phase::Solid);
+    for (int x = 0; x < 26; ++x)
+        for (int y = 0; y < 24; ++y)
+            for (int z = 0; z < 25; ++z) {
+                // The search has balls at voxels only, whose radius is up to 0.87 below the best nearby; and
+                // what a ball all but holds counts as held.
+                float best = 0, most = 0;
+                if (inside.at({x, y, z}) > 0)
+                    for (int a = 0; a < 26; ++a)
+                        for (int b = 0; b < 24; ++b)
+                            for (int c = 0; c < 25; ++c) {
+                                const float d = inside.at({a, b, c});
+                                if (d <= 0) continue;
+                                const float apart = length(Vec3f{float(a - x), float(b - y), float(c - z)});
+                                if (apart <= d) best = std::max(best, 2 * d);
+                                if (apart <= d + 1.25f) most = std::max(most, 2 * d + 1.75f);
+                            }
+                const std::size_t i = std::size_t((x * 24 + y) * 25 + z);
+                REQUIRE(thickness.diameter[i] <= most);
+                REQUIRE(thickness.diameter[i] >= best - 0.1f);
+            }
+}
+
+TEST_CASE("localThickness: the same for any number of threads; shares sum to one", "[measure][determinism]") {
+    const BrickField field = test::ballsField({50, 40, 45}, 2, 3.f, 12);
+    RunContext one;
+    one.threads = 1;
+    CHECK(localThickness(field, 3, Phase::Void, 1e9, one).diameter ==
+          localThickness(field, 3, Phase::Void, 1e9).diameter);
+    const ThicknessSummary summary = solidSummary(field);
+    CHECK(std::accumulate(summary.share.begin(), summary.share.end(), 0.0) == Approx(1));
+    CHECK(solidSummary(BrickField(field.box(), 1.f)).mean == 0);
+    RunContext small;
+    small.maxMemory = 1000;
+    CHECK(test::thrownBy([&] { localThickness(field, 3, Phase::Solid, 1e9, small); }).code ==
+          int(ErrorCode::Memory));
+}

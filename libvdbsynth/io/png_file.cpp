@@ -124,6 +124,21 @@ void writePng(const std::string& path, const Picture& picture) {
     writeImage(path, picture.width, picture.height, PNG_FORMAT_RGB, picture.pixels.data());
 }
 
+std::string encodePng(const Picture& picture) {
+    png_image image;
+    std::memset(&image, 0, sizeof image);
+    image.version = PNG_IMAGE_VERSION;
+    image.width = png_uint_32(picture.width);
+    image.height = png_uint_32(picture.height);
+    image.format = PNG_FORMAT_RGB;
+    png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+    std::string bytes(size, '\0');
+    if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, picture.pixels.data(), 0, nullptr))
+        throw Error(ErrorCode::Memory, std::string("a picture cannot be encoded: ") + image.message);
+    bytes.resize(size);
+    return bytes;
+}
+
 void writeGreyPng(const std::string& path, int width, int height, const std::vector<float>& values) {
     const bool alpha = std::any_of(values.begin(), values.end(), [](float v) { return std::isnan(v); });
     std::vector<std::uint16_t> pixels;

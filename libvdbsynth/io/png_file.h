@@ -14,5 +14,7 @@ struct Picture {
 /// Writes a PNG without time stamps: the same picture gives the same bytes.
 /// @throw Error Io
 void writePng(const std::string& path, const Picture& picture);
+/// The bytes of such a file. @throw Error Memory
+std::string encodePng(const Picture& picture);
 
 }  // namespace vdbsynth

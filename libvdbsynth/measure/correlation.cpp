@@ -85,7 +85,8 @@ TwoPointCorrelation twoPointCorrelation(const Occupancy& solid, int reach, const
     for (const Task& task : tasks) {
         const double within = pairsWithin(solid.size(), task.shift);
         if (task.axis >= 0) {
-            result.axis[std::size_t(task.axis)][std::size_t(task.r)] = double(task.hits) / within;
+            result.axis[std::size_t(task.axis)][std::size_t(task.r)] =
+                double(task.hits) / std::max(1.0, within);
         } else {
             result.radial[std::size_t(task.r)] += double(task.hits);
             pairs[std::size_t(task.r)] += within;
@@ -119,8 +120,10 @@ LineStatistics lineStatistics(const Occupancy& solid, int axis, int reach) {
                 // Changes from void to solid and from solid to void, half a chord each.
                 beginnings += (begin > 0 ? 0.5 : 0) + (end < n ? 0.5 : 0);
                 if (begin > 0 && end < n) {
-                    chords[std::size_t(std::min(length, reach))] += 1;
-                    whole += 1;
+                    // Of the places where it could lie in an endless line, n - 1 - length show it whole.
+                    const double weight = 1.0 / (n - 1 - length);
+                    chords[std::size_t(std::min(length, reach))] += weight;
+                    whole += weight;
                 }
             });
         }
@@ -129,7 +132,8 @@ LineStatistics lineStatistics(const Occupancy& solid, int axis, int reach) {
     for (std::size_t r = 0; r < placements.size(); ++r)
         result.linealPath[r] = int(r) < n ? placements[r] / (lines * (n - double(r))) : 0;
     result.chords = chords;
-    for (double& share : result.chords) share /= std::max(1.0, whole);
+    if (whole > 0)
+        for (double& share : result.chords) share /= whole;
     // Changes are seen between n - 1 pairs of n voxels.
     if (beginnings > 0) result.meanChord = voxels / n / (beginnings / std::max(1, n - 1));
     return result;

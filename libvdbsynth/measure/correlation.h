@@ -13,7 +13,7 @@ struct TwoPointCorrelation {
     std::array<std::vector<double>, 3> axis;  ///< [reach + 1] along x, y, z
 };
 
-/// @param reach  longest r [voxels], at least 1, less than every side
+/// @param reach  longest r [voxels], at least 1; where no pair lies in the box, values are 0
 /// The radial value at r is the mean over displacements whose length rounds to r: all of them where these are
 /// at most 96 up to sign, else 96 spread evenly over the half sphere.
 /// @par Cost    O(48 * reach * voxels / 64)   @par Repeats same bits for any number of threads
@@ -25,7 +25,8 @@ struct LineStatistics {
     /// 0: one voxel [torquato2002, section 2.4]
     std::vector<double> linealPath;
     /// [reach + 1] share of the chords of that length; the last holds all longer ones. Chords cut by the box
-    /// do not count.
+    /// do not count; whole ones of length l count 1 / (n - 1 - l) in a line of n, for the longer a chord the
+    /// rarer the box shows it whole [miles1974].
     std::vector<double> chords;
     double meanChord = 0;  ///< [voxels] solid voxels over chord beginnings, cut chords too, without bias
 };

@@ -22,8 +22,9 @@ struct Distances {
 };
 
 /// Distances over all of a box from a field that knows them near the surface only. Every sample within one of
-/// the surface has a foot on it, down its gradient; the nearest foot of each sample is found by lower envelopes
-/// of parabolas along z, y and x [felzenszwalb2012], whose centres are the feet's places, not those of samples.
+/// the surface has a foot on it, down its gradient; the nearest foot of each sample is found by lower
+/// envelopes of parabolas along z, y and x [felzenszwalb2012], whose centres are the feet's places, not those
+/// of samples.
 /// @param field  box beginning at 0, negative in the solid
 /// @param scale  makes its values distances [samples]
 /// @param band   [samples] where |value * scale| is under it, it is taken as it is

@@ -13,7 +13,9 @@ namespace vdbsynth {
 namespace {
 
 constexpr int kStride = 4;
-constexpr double kPatches = 8000;
+constexpr double kPatches = 6000;
+constexpr std::size_t kPlaces = 100000;
+constexpr double kNearCost = 1;            // [voxels^2] what may turn out a copy when followed downhill
 constexpr double kCopyCost = 0.25 * 0.25;  // [voxels^2]
 
 bool earlier(const SourcedVoxel& a, const SourcedVoxel& b) {
@@ -165,6 +167,7 @@ MatchedSources sourcesByMatching(std::shared_ptr<const BrickField> result, const
     PatchSourceOptions drawn;
     drawn.box = exemplarBox;
     drawn.scales = 1;
+    drawn.limit = kPlaces;
     const PatchSource in = patchSource(exemplar, drawn, ctx);
     if (of.scales.empty() || in.scales.empty()) return found;
     PatchScale& queries = of.scales.front();
@@ -176,7 +179,7 @@ MatchedSources sourcesByMatching(std::shared_ptr<const BrickField> result, const
     queries.places.erase(std::remove_if(queries.places.begin(), queries.places.end(), outside),
                          queries.places.end());
     const PatchMatches matches =
-        matchPatches(queries, in.scales.front(), queries.places.size(), 2 * kCopyCost, ctx);
+        matchPatches(queries, in.scales.front(), queries.places.size(), kNearCost, ctx);
     const int margin = (kPatchSide - kStride) / 2;
     for (std::size_t i = 0; i < matches.from.size(); ++i)
         for (int n = 0; n < kStride * kStride * kStride; ++n) {

@@ -79,18 +79,34 @@ std::vector<Index3> placesIn(const BrickField& field, const IndexBox& box, const
     return places;
 }
 
-// Means of the eight octants: their squared distance, over eight, is at most the patches'.
-using Octants = std::array<float, 8>;
+// What is kept of a patch to bound its cost: means over its 8 octants and its 64 cells of 2^3, and the length
+// of what is left when each level's means are taken away. Squared differences of means, times their samples,
+// plus that of the lengths, is at most the patches'.
+struct Summary {
+    std::array<float, 8> octants{};
+    std::array<float, 64> cells{};
+    float beyondOctants = 0, beyondCells = 0;
+};
 
-Octants octantsOf(const Patch& patch) {
-    Octants means{};
+Summary summaryOf(const Patch& patch) {
+    Summary summary;
     std::size_t i = 0;
-    for (int x = 0; x < kPatchSide; ++x)
-        for (int y = 0; y < kPatchSide; ++y)
-            for (int z = 0; z < kPatchSide; ++z)
-                means[std::size_t((x >> 2) * 4 + (y >> 2) * 2 + (z >> 2))] += patch[i++];
-    for (float& mean : means) mean *= 8.f / kSamples;
-    return means;
+    double energy = 0;
+    for (std::size_t x = 0; x < kPatchSide; ++x)
+        for (std::size_t y = 0; y < kPatchSide; ++y)
+            for (std::size_t z = 0; z < kPatchSide; ++z, ++i) {
+                summary.cells[((x >> 1) * 4 + (y >> 1)) * 4 + (z >> 1)] += patch[i] / 8;
+                energy += double(patch[i]) * double(patch[i]);
+            }
+    double inCells = 0, inOctants = 0;
+    for (std::size_t c = 0; c < 64; ++c) {
+        summary.octants[(c >> 5) * 4 + (c >> 3 & 1) * 2 + (c >> 1 & 1)] += summary.cells[c] / 8;
+        inCells += 8 * double(summary.cells[c]) * double(summary.cells[c]);
+    }
+    for (float mean : summary.octants) inOctants += 64 * double(mean) * double(mean);
+    summary.beyondCells = float(std::sqrt(std::max(0.0, energy - inCells)));
+    summary.beyondOctants = float(std::sqrt(std::max(0.0, energy - inOctants)));
+    return summary;
 }
 
 double costOf(const Patch& a, const Patch& b) {
@@ -106,28 +122,48 @@ struct Match {
     double cost = std::numeric_limits<double>::infinity();
 };
 
-// Octant means of all places, [8][places], so that bounds come for many places at once.
-using OctantTable = std::array<std::vector<float>, 8>;
+constexpr float kMargin = 0.9999f;  // bounds are rounded; this keeps them below
 
-void boundAll(const Octants& mine, const OctantTable& table, std::vector<float>& bounds) {
+// Summaries of all places; the coarse level by number first, so that bounds come for many places at once.
+struct SummaryTable {
+    std::array<std::vector<float>, 8> octants;
+    std::vector<float> beyondOctants;
+    std::vector<Summary> all;
+};
+
+void boundAll(const Summary& mine, const SummaryTable& table, std::vector<float>& bounds) {
     std::fill(bounds.begin(), bounds.end(), 0.f);
     for (std::size_t k = 0; k < 8; ++k) {
-        const float* means = table[k].data();
+        const float* means = table.octants[k].data();
         for (std::size_t i = 0; i < bounds.size(); ++i)
-            bounds[i] += (mine[k] - means[i]) * (mine[k] - means[i]);
+            bounds[i] += (mine.octants[k] - means[i]) * (mine.octants[k] - means[i]);
     }
-    for (float& bound : bounds) bound *= 0.9999f / 8;  // a margin for rounding
+    for (std::size_t i = 0; i < bounds.size(); ++i) {
+        const float rest = mine.beyondOctants - table.beyondOctants[i];
+        bounds[i] = (bounds[i] * (kSamples / 8) + rest * rest) * (kMargin / kSamples);
+    }
+}
+
+float closerBound(const Summary& mine, const Summary& other) {
+    std::array<float, 4> sums{};
+    for (std::size_t i = 0; i < 64; i += 4)
+        for (std::size_t k = 0; k < 4; ++k)
+            sums[k] += (mine.cells[i + k] - other.cells[i + k]) * (mine.cells[i + k] - other.cells[i + k]);
+    const float rest = mine.beyondCells - other.beyondCells;
+    return ((sums[0] + sums[1] + sums[2] + sums[3]) * (kSamples / 64) + rest * rest) * (kMargin / kSamples);
 }
 
 // The cheapest of the places that cost less than `limit`: the one of the least bound first, then all whose
 // bound is under its cost, in the order of their bounds.
-Match cheapest(const Patch& query, const PatchScale& to, const OctantTable& table, double limit,
+Match cheapest(const Patch& query, const PatchScale& to, const SummaryTable& table, double limit,
                std::vector<float>& bounds) {
-    boundAll(octantsOf(query), table, bounds);
+    const Summary mine = summaryOf(query);
+    boundAll(mine, table, bounds);
     Match best;
     best.cost = limit;
     Patch patch;
     const auto look = [&](std::size_t i) {
+        if (double(closerBound(mine, table.all[i])) > best.cost) return;
         readPatch(*to.field, to.places[i], patch);
         const double cost = costOf(query, patch);
         if (cost < best.cost || (cost == best.cost && to.places[i] < best.place)) best = {to.places[i], cost};
@@ -181,25 +217,23 @@ double quantileDistance(const std::vector<float>& a, const std::vector<float>& b
     return area;
 }
 
-std::vector<float> projected(const std::vector<Patch>& patches, const Patch& direction) {
-    std::vector<float> result(patches.size());
-    for (std::size_t p = 0; p < patches.size(); ++p) {
-        std::array<float, 4> sums{};
-        for (std::size_t i = 0; i < kSamples; i += 4)
-            for (std::size_t k = 0; k < 4; ++k) sums[k] += patches[p][i + k] * direction[i + k];
-        result[p] = (sums[0] + sums[1]) + (sums[2] + sums[3]);
-    }
-    std::sort(result.begin(), result.end());
-    return result;
+float along(const Patch& patch, const Patch& direction) {
+    std::array<float, 4> sums{};
+    for (std::size_t i = 0; i < kSamples; i += 4)
+        for (std::size_t k = 0; k < 4; ++k) sums[k] += patch[i + k] * direction[i + k];
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
 
-std::vector<Patch> patchesOf(const PatchScale& scale, std::size_t count, const RunContext& ctx) {
-    const std::vector<Index3> places = drawn(scale.places, count, ctx.seed, kLotPurpose + 1);
-    std::vector<Patch> patches(places.size());
-    parallelFor(ctx, places.size(), 256, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) readPatch(*scale.field, places[i], patches[i]);
-    });
-    return patches;
+Patch directionNumber(std::size_t d, std::uint64_t seed) {
+    Random random(seed, d, kDirectionPurpose);
+    Patch direction;
+    double squared = 0;
+    for (float& component : direction) {
+        component = float(random.normal());
+        squared += double(component) * double(component);
+    }
+    for (float& component : direction) component /= float(std::sqrt(squared));
+    return direction;
 }
 
 }  // namespace
@@ -222,20 +256,48 @@ PatchSource patchSource(std::shared_ptr<const BrickField> field, const PatchSour
     return source;
 }
 
-double slicedWasserstein(const PatchScale& a, const PatchScale& b, std::size_t count, const RunContext& ctx) {
-    const std::vector<Patch> ofA = patchesOf(a, count, ctx), ofB = patchesOf(b, count, ctx);
-    std::vector<double> distances(kDirections);
+Projections project(const PatchScale& scale, std::size_t count, const RunContext& ctx) {
+    Projections result;
+    result.places = drawn(scale.places, count, ctx.seed, kLotPurpose + 1);
+    std::vector<Patch> patches(result.places.size());
+    parallelFor(ctx, patches.size(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) readPatch(*scale.field, result.places[i], patches[i]);
+    });
+    result.values.resize(kDirections);
     parallelFor(ctx, kDirections, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t d = begin; d < end; ++d) {
-            Random random(ctx.seed, d, kDirectionPurpose);
-            Patch direction;
-            double squared = 0;
-            for (float& component : direction) {
-                component = float(random.normal());
-                squared += double(component) * double(component);
-            }
-            for (float& component : direction) component /= float(std::sqrt(squared));
-            distances[d] = quantileDistance(projected(ofA, direction), projected(ofB, direction));
+            const Patch direction = directionNumber(d, ctx.seed);
+            for (const Patch& patch : patches) result.values[d].push_back(along(patch, direction));
+        }
+    });
+    return result;
+}
+
+Projections within(const Projections& all, const IndexBox& box, int scale, bool inside) {
+    std::vector<std::size_t> kept;
+    const int side = kPatchSide << scale;
+    for (std::size_t i = 0; i < all.places.size(); ++i) {
+        const IndexBox patch = IndexBox::cube(all.places[i] * (1 << scale), side);
+        if (box.contains(patch) == inside) kept.push_back(i);
+    }
+    Projections result;
+    for (std::size_t i : kept) result.places.push_back(all.places[i]);
+    for (const std::vector<float>& values : all.values) {
+        result.values.emplace_back();
+        for (std::size_t i : kept) result.values.back().push_back(values[i]);
+    }
+    return result;
+}
+
+double slicedWasserstein(const Projections& a, const Projections& b, const RunContext& ctx) {
+    if (a.places.empty() || b.places.empty()) return 0;
+    std::vector<double> distances(a.values.size());
+    parallelFor(ctx, distances.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t d = begin; d < end; ++d) {
+            std::vector<float> ofA = a.values[d], ofB = b.values[d];
+            std::sort(ofA.begin(), ofA.end());
+            std::sort(ofB.begin(), ofB.end());
+            distances[d] = quantileDistance(ofA, ofB);
         }
     });
     double sum = 0;
@@ -245,14 +307,17 @@ double slicedWasserstein(const PatchScale& a, const PatchScale& b, std::size_t c
 
 PatchMatches matchPatches(const PatchScale& from, const PatchScale& to, std::size_t count, double limit,
                           const RunContext& ctx) {
-    OctantTable table;
-    for (std::vector<float>& means : table) means.resize(to.places.size());
+    SummaryTable table;
+    for (std::vector<float>& means : table.octants) means.resize(to.places.size());
+    table.beyondOctants.resize(to.places.size());
+    table.all.resize(to.places.size());
     parallelFor(ctx, to.places.size(), 1024, [&](std::size_t begin, std::size_t end) {
         Patch patch;
         for (std::size_t i = begin; i < end; ++i) {
             readPatch(*to.field, to.places[i], patch);
-            const Octants octants = octantsOf(patch);
-            for (std::size_t k = 0; k < 8; ++k) table[k][i] = octants[k];
+            table.all[i] = summaryOf(patch);
+            for (std::size_t k = 0; k < 8; ++k) table.octants[k][i] = table.all[i].octants[k];
+            table.beyondOctants[i] = table.all[i].beyondOctants;
         }
     });
     PatchMatches result;

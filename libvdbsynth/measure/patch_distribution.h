@@ -24,9 +24,9 @@ struct PatchSource {
 };
 
 struct PatchSourceOptions {
-    IndexBox box;                ///< [voxels of the field] patches lie within it
-    std::size_t limit = 100000;  ///< most places a scale; where there are more, that many by lot
-    int scales = kPatchScales;   ///< 1..kPatchScales
+    IndexBox box;               ///< [voxels of the field] patches lie within it
+    std::size_t limit = 30000;  ///< most places a scale; where there are more, that many by lot
+    int scales = kPatchScales;  ///< 1..kPatchScales
 };
 
 /// @param field  [voxels] clamped to the band, box beginning at 0
@@ -34,12 +34,23 @@ struct PatchSourceOptions {
 PatchSource patchSource(std::shared_ptr<const BrickField> field, const PatchSourceOptions& options,
                         const RunContext& ctx = {});
 
-/// Sliced Wasserstein distance of two sets of patches [elnekave2022, Eq. 3]: the mean over 128 random
-/// directions of the distance between the two sets of projections, each of up to `count` patches by lot, that
-/// is, the area between their quantile functions. [voxels] Both sets must not be empty.
-/// @par Repeats same bits for ctx.seed, any number of threads
-double slicedWasserstein(const PatchScale& a, const PatchScale& b, std::size_t count,
-                         const RunContext& ctx = {});
+/// Up to `count` patches of a scale by lot, each projected on the same 128 random directions.
+struct Projections {
+    std::vector<Index3> places;              ///< [patches]
+    std::vector<std::vector<float>> values;  ///< [128][patches], in the order of places
+};
+/// @par Repeats same bits for (scale, count, ctx.seed), any number of threads
+Projections project(const PatchScale& scale, std::size_t count, const RunContext& ctx = {});
+
+/// Those of the patches that lie in a box of the finest scale's voxels, or those that do not.
+/// @param scale  0, 1, 2: which scale they are of
+Projections within(const Projections& all, const IndexBox& box, int scale, bool inside = true);
+
+/// Sliced Wasserstein distance of two sets of patches [elnekave2022, Eq. 3]: the mean over the directions of
+/// the distance between the two sets of projections, that is, the area between their quantile functions.
+/// [voxels] 0 if a set is empty.
+/// @par Repeats same bits for any number of threads
+double slicedWasserstein(const Projections& a, const Projections& b, const RunContext& ctx = {});
 
 /// How much like the patches of `to` those of `from` are: the mean over up to `count` patches of `from` by
 /// lot of the least mean squared difference [voxels^2] to a patch of `to`: coherence of a result with its

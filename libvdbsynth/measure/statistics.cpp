@@ -1,6 +1,6 @@
 #include "libvdbsynth/measure/statistics.h"
 
-#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/measure/correlation.h"
 
 #include <algorithm>
@@ -106,6 +106,43 @@ Topology measureTopology(const MeasuredModel& model) {
         whole ? euler : euler / eulerVolume(solid.size(), model.beyond) * solid.volume();
     if (whole) topology.tunnels = double(topology.solid.sizes.size()) + topology.enclosed - euler;
     return topology;
+}
+
+GradientError measureGradient(const MeasuredModel& model, const RunContext& ctx) {
+    const BrickField& field = *model.field;
+    const IndexBox box = model.counted.expanded(model.beyond == Beyond::Void ? 1 : -2);
+    if (box.empty()) return {};
+    std::vector<std::vector<float>> planes(std::size_t(box.size().x));
+    parallelFor(ctx, planes.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t plane = begin; plane < end; ++plane)
+            for (int y = box.min.y; y <= box.max.y; ++y)
+                for (int z = box.min.z; z <= box.max.z; ++z) {
+                    const Index3 p{box.min.x + int(plane), y, z};
+                    const float value = field.inside(p), sign = value < 0 ? -1.f : 1.f;
+                    if (std::abs(value) >= 1) continue;
+                    float central = 0, upwind = 0;
+                    for (int axis = 0; axis < 3; ++axis) {
+                        Index3 low = p, high = p;
+                        --low[axis];
+                        ++high[axis];
+                        const float before = field.at(low), after = field.at(high);
+                        const float drop = std::max({0.f, sign * (value - before), sign * (value - after)});
+                        central += (after - before) * (after - before) / 4;
+                        upwind += drop * drop;
+                    }
+                    planes[plane].push_back(
+                        std::min(std::abs(std::sqrt(central) - 1), std::abs(std::sqrt(upwind) - 1)));
+                }
+    });
+    std::vector<float> all;
+    for (const std::vector<float>& plane : planes) all.insert(all.end(), plane.begin(), plane.end());
+    GradientError error;
+    if (all.empty()) return error;
+    for (float value : all) error.mean += double(value) / double(all.size());
+    const auto p99 = all.begin() + std::ptrdiff_t((all.size() - 1) * 99 / 100);
+    std::nth_element(all.begin(), p99, all.end());
+    error.percentile99 = double(*p99);
+    return error;
 }
 
 double statisticDistance(const Statistic& a, const Statistic& b) {

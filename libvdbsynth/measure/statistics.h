@@ -52,6 +52,14 @@ struct Topology {
 };
 Topology measureTopology(const MeasuredModel& model);
 
+/// How true to a distance the field is where |value| < 1: mean and 99th percentile of | |grad| - 1 |, by
+/// central or upwind differences, whichever is nearer (a ridge inside a wall has no central gradient). Two
+/// voxels at the faces of a domain do not count, where caps bend the field.
+struct GradientError {
+    double mean = 0, percentile99 = 0;
+};
+GradientError measureGradient(const MeasuredModel& model, const RunContext& ctx = {});
+
 /// Distance of two statistics: the absolute difference of numbers, the root of the mean squared difference of
 /// curves (as far as both go).
 double statisticDistance(const Statistic& a, const Statistic& b);

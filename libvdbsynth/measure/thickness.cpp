@@ -40,39 +40,67 @@ bool isRidge(const Distances& distances, const Index3& p, float d) {
             for (int z = std::max(0, p.z - 1); z <= std::min(size.z - 1, p.z + 1); ++z) {
                 const float apart =
                     std::sqrt(float(std::abs(x - p.x) + std::abs(y - p.y) + std::abs(z - p.z)));
-                if (apart > 0 && distances.at({x, y, z}) >= d + apart * 0.98f) return false;
+                if (apart > 0 && distances.at({x, y, z}) >= d + apart * 0.96f) return false;
             }
     return true;
 }
+
+// Where a ball may stand around a sample, on a lattice of quarters, and its ways to the 27 samples around.
+struct Stands {
+    static constexpr int kSteps = 5, kNeighbours = 27, kPadded = 28;
+    std::array<Vec3f, kSteps * kSteps * kSteps> place;
+    std::array<std::array<float, kPadded>, kSteps * kSteps * kSteps> way;
+
+    static std::size_t number(int x, int y, int z) {
+        return std::size_t(((x + 2) * kSteps + y + 2) * kSteps + z + 2);
+    }
+    Stands() {
+        for (int n = 0; n < kSteps * kSteps * kSteps; ++n) {
+            const Vec3f c{float(n / 25 - 2) / 4, float(n / 5 % 5 - 2) / 4, float(n % 5 - 2) / 4};
+            place[std::size_t(n)] = c;
+            way[std::size_t(n)].fill(1e9f);
+            for (int k = 0; k < kNeighbours; ++k)
+                way[std::size_t(n)][std::size_t(k)] =
+                    length(c - Vec3f{float(k / 9 - 1), float(k / 3 % 3 - 1), float(k % 3 - 1)});
+        }
+    }
+};
 
 // The ball that stands best within half a sample of a ridge sample p. From a neighbour q on, distances grow
 // by at most the way: min over q of d(q) + |c - q| bounds the radius at c, and is it where one of the q lies
 // on the line from c to the surface.
 Ball bestBall(const Distances& distances, const Index3& p) {
-    std::array<std::pair<Vec3f, float>, 27> near;
-    std::size_t count = 0;
-    for (int n = 0; n < 27; ++n) {
-        const Index3 d{n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1}, q = p + d;
-        if (!IndexBox::fromSize(distances.size).contains(q)) continue;
-        near[count++] = {{float(d.x), float(d.y), float(d.z)}, distances.at(q)};
+    static const Stands stands;
+    std::array<float, Stands::kPadded> near;
+    near.fill(1e9f);
+    for (int k = 0; k < Stands::kNeighbours; ++k) {
+        const Index3 q = p + Index3{k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1};
+        if (IndexBox::fromSize(distances.size).contains(q)) near[std::size_t(k)] = distances.at(q);
     }
-    Vec3f best;
     float radius = distances.at(p);
-    for (const float step : {0.33f, 0.16f, 0.08f}) {
-        const Vec3f around = best;
+    Index3 best{0, 0, 0};
+    for (const int step : {2, 1}) {
+        const Index3 around = best;
         for (int n = 0; n < 27; ++n) {
-            Vec3f c = around + Vec3f{float(n / 9 - 1), float(n / 3 % 3 - 1), float(n % 3 - 1)} * step;
-            for (int axis = 0; axis < 3; ++axis) c[axis] = std::clamp(c[axis], -0.5f, 0.5f);
-            float bound = std::numeric_limits<float>::max();
-            for (std::size_t k = 0; k < count && bound > radius; ++k)
-                bound = std::min(bound, near[k].second + length(c - near[k].first));
+            const Index3 c = around + Index3{n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1} * step;
+            if (std::max({std::abs(c.x), std::abs(c.y), std::abs(c.z)}) > 2) continue;
+            const std::array<float, Stands::kPadded>& way = stands.way[Stands::number(c.x, c.y, c.z)];
+            std::array<float, 4> bounds;
+            bounds.fill(1e9f);
+            for (std::size_t k = 0; k < Stands::kPadded; k += 4)
+                for (std::size_t lane = 0; lane < 4; ++lane) {
+                    const float bound = near[k + lane] + way[k + lane];
+                    bounds[lane] = bound < bounds[lane] ? bound : bounds[lane];
+                }
+            const float bound = std::min({bounds[0], bounds[1], bounds[2], bounds[3]});
             if (bound > radius) {
                 radius = bound;
                 best = c;
             }
         }
     }
-    return {Vec3f{float(p.x), float(p.y), float(p.z)} + best, radius};
+    return {Vec3f{float(p.x), float(p.y), float(p.z)} + stands.place[Stands::number(best.x, best.y, best.z)],
+            radius};
 }
 
 int levelFor(float radius) {

@@ -79,6 +79,6 @@ std::string helpText(const Command& command);
 /// Data for standard output.
 void printLine(const std::string& text);
 
-extern const Command kConvert, kInfo, kCrop, kMask, kMatch, kSynth, kRepeat, kRender, kMake;
+extern const Command kCompare, kConvert, kInfo, kCrop, kMask, kMatch, kSynth, kRepeat, kRender, kMake;
 
 }  // namespace vdbsynth::cli

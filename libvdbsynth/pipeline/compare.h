@@ -1,0 +1,95 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/measure/novelty.h"
+#include "libvdbsynth/measure/patch_distribution.h"
+#include "libvdbsynth/measure/statistics.h"
+#include "libvdbsynth/measure/surface_distance.h"
+#include "libvdbsynth/measure/verdict.h"
+#include "libvdbsynth/procedural/exemplar.h"
+#include "libvdbsynth/vdb/level_set.h"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vdbsynth {
+
+struct CompareOptions {
+    /// Axes along which the reference is the same everywhere in the mean; empty: those whose both faces cut
+    /// the solid, where a domain is recorded, else none.
+    std::optional<std::array<bool, 3>> stationary;
+    /// The process that the reference is a sample of: gives the yardstick. Its size is the reference's.
+    std::optional<ExemplarOptions> process;
+    int fresh = 10;  ///< exemplars drawn afresh for it, 2..100
+};
+
+/// One model to compare with the reference.
+struct CompareInput {
+    std::string name;
+    LevelSet model;
+    GridPtr source;    ///< Vec3I grid of a source map, in the model's voxels; null: none
+    GridPtr exemplar;  ///< Int32 grid of a source map; null: all are of the reference
+};
+
+/// Gives the input the source map among some grids. @return false if there is none in the model's voxels
+bool takeSourceMap(const std::vector<GridPtr>& grids, CompareInput& input);
+
+/// What is said of one model.
+struct ModelStatistics {
+    std::string name;
+    IndexBox domain;
+    bool domainRecorded = false;
+    double voxelSize = 1;
+    std::vector<Statistic> statistics;
+    Topology topology;
+    GradientError gradient;
+    double bandCompleteness =
+        1;                   ///< share of the voxels within one of the surface whose neighbours are active
+    std::size_t crumbs = 0;  ///< parts smaller than the smallest hundredth of the reference's
+    int thicknessCoarsening = 1;  ///< side of the samples that thickness was measured on [voxels]
+};
+
+/// Where a result's voxels are said to come from.
+enum class SourceKind {
+    None,     ///< nothing near a surface
+    Map,      ///< its own source map
+    Matching  ///< looked for in the reference
+};
+
+/// What is said of a model and the reference together.
+struct ModelDistances {
+    struct Scale {
+        double wasserstein = 0;   ///< [voxels]
+        double coherence = 0;     ///< [voxels] root of the mean squared difference, as are all costs here
+        double completeness = 0;  ///< [voxels]
+    };
+    std::vector<Scale> scales;
+    LocalPatches localPatches;
+    std::optional<SurfaceDistance> surface;  ///< [voxels of the reference], where both lie in one place
+    SourceKind sourceKind = SourceKind::None;
+    double verified = 0;  ///< share of the map's voxels that hold, 0 without a map
+    IndexBox looked;      ///< Matching: the box looked at, in the model's voxels
+    Novelty novelty;
+    std::vector<Verdict> verdicts;  ///< empty without stationary axes
+};
+
+struct Comparison {
+    ModelStatistics reference;
+    std::vector<ModelStatistics> others;
+    std::vector<ModelDistances> distances;  ///< of each other
+    std::array<bool, 3> stationary{};
+    std::size_t parts = 0;              ///< sub-volumes of the reference
+    std::uint64_t crumbLimit = 0;       ///< [voxels] what is smaller is a crumb
+    int reach = 0;                      ///< [voxels] of curves
+    std::vector<Yardstick> yardsticks;  ///< empty without a process
+};
+
+/// Statistics of a reference and of other models, and how far they are apart: docs/measures.md defines each.
+/// All models should have one voxel size; values are in voxels.
+/// @throw Error InvalidOption, Memory, Cancelled, Unusable (a process that cannot make the domain's size)
+/// @par Cost    256^3: some seconds a model   @par Repeats same bits for ctx.seed, any number of threads
+Comparison compareModels(const CompareInput& reference, const std::vector<CompareInput>& others,
+                         const CompareOptions& options = {}, const RunContext& ctx = {});
+
+}  // namespace vdbsynth

@@ -1,0 +1,310 @@
+// A comparison in text and JSON.
+#include "tools/vdb_synth/compare_report.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace vdbsynth::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string column(const std::string& text, std::size_t width) {
+    return text.size() >= width ? text + " " : text + std::string(width - text.size(), ' ');
+}
+
+constexpr std::size_t kName = 38, kNumber = 13;
+
+// What a person reads of a statistic: a number, three by axis, or that it is a curve.
+std::string valueText(const Statistic& statistic, double voxel) {
+    if (statistic.curve) return "curve";
+    std::string text;
+    for (double value : statistic.values)
+        text += (text.empty() ? "" : " ") + shortNumber(value * std::pow(voxel, statistic.power));
+    return text;
+}
+
+std::string sizeText(const IndexBox& box) {
+    const Index3 size = box.size();
+    return std::to_string(size.x) + " x " + std::to_string(size.y) + " x " + std::to_string(size.z);
+}
+
+void appendModel(const char* role, const ModelStatistics& model, std::string& text) {
+    text += std::string(role) + " " + model.name + ": " +
+            (model.domainRecorded ? "texture, domain " : "object, box ") + sizeText(model.domain) +
+            " voxels of " + shortNumber(model.voxelSize) + "\n";
+}
+
+void appendStatistics(const Comparison& comparison, std::size_t i, bool world, std::string& text) {
+    const ModelStatistics &reference = comparison.reference, &other = comparison.others[i];
+    const std::vector<Verdict>& verdicts = comparison.distances[i].verdicts;
+    const std::size_t wide = 2 * kNumber;
+    text += column(world ? "in world units" : "in voxels", kName) + column("reference", wide) +
+            column("other", wide);
+    if (!world && !verdicts.empty())
+        text += column("distance", kNumber) + column("sigma", kNumber) + column("sigmas away", kNumber);
+    text += "\n";
+    for (std::size_t s = 0; s < std::min(reference.statistics.size(), other.statistics.size()); ++s) {
+        const Statistic &a = reference.statistics[s], &b = other.statistics[s];
+        if (world && (a.power == 0 || a.curve)) continue;
+        text += column(a.name, kName) + column(valueText(a, world ? reference.voxelSize : 1), wide) +
+                column(valueText(b, world ? other.voxelSize : 1), wide);
+        if (!world && !verdicts.empty()) {
+            const Verdict& v = verdicts[s];
+            text += column(shortNumber(v.distance), kNumber) + column(shortNumber(v.sigma), kNumber) +
+                    column(shortNumber(v.away()), kNumber) + (v.passes() ? "pass" : "FAR");
+        }
+        text += "\n";
+    }
+}
+
+void appendCounts(const Comparison& comparison, std::size_t i, std::string& text) {
+    const ModelStatistics &a = comparison.reference, &b = comparison.others[i];
+    const auto row = [&](const std::string& name, double of, double other) {
+        text += column(name, kName) + column(shortNumber(of), 2 * kNumber) + shortNumber(other) + "\n";
+    };
+    text += "\ncounted once\n";
+    row("parts of the solid", double(a.topology.solid.sizes.size()), double(b.topology.solid.sizes.size()));
+    const auto largest = [](const Components& c) { return c.sizes.empty() ? 0.0 : double(c.sizes.front()); };
+    row("largest part (voxels)", largest(a.topology.solid), largest(b.topology.solid));
+    row("parts of the void", double(a.topology.empty.sizes.size()), double(b.topology.empty.sizes.size()));
+    row("enclosed parts of the void", a.topology.enclosed, b.topology.enclosed);
+    row("Euler characteristic", a.topology.eulerCharacteristic, b.topology.eulerCharacteristic);
+    if (!a.domainRecorded && !b.domainRecorded) row("tunnels", a.topology.tunnels, b.topology.tunnels);
+    row("crumbs (parts under " + std::to_string(comparison.crumbLimit) + " voxels)", double(a.crumbs),
+        double(b.crumbs));
+    row("| |grad| - 1 |, mean", a.gradient.mean, b.gradient.mean);
+    row("| |grad| - 1 |, 99th percentile", a.gradient.percentile99, b.gradient.percentile99);
+    row("band completeness", a.bandCompleteness, b.bandCompleteness);
+    for (const ModelStatistics* model : {&a, &b})
+        if (model->thicknessCoarsening > 1)
+            text += model->name + ": thickness was measured on every " +
+                    std::to_string(model->thicknessCoarsening) + ". voxel\n";
+}
+
+void appendDistances(const Comparison& comparison, std::size_t i, std::string& text) {
+    const ModelDistances& d = comparison.distances[i];
+    text += "\n" + column("distances (voxels), patches of", kName);
+    for (std::size_t s = 0; s < d.scales.size(); ++s)
+        text += column(std::to_string(kPatchSide << s) + " voxels", kNumber);
+    text += "\n";
+    const auto row = [&](const char* name, double ModelDistances::Scale::*member) {
+        text += column(name, kName);
+        for (const ModelDistances::Scale& scale : d.scales)
+            text += column(shortNumber(scale.*member), kNumber);
+        text += "\n";
+    };
+    row("sliced Wasserstein", &ModelDistances::Scale::wasserstein);
+    row("coherence (other in reference)", &ModelDistances::Scale::coherence);
+    row("completeness (reference in other)", &ModelDistances::Scale::completeness);
+    for (std::size_t v = comparison.others[i].statistics.size(); v < d.verdicts.size(); ++v)
+        text += column(d.verdicts[v].name, kName) + shortNumber(d.verdicts[v].away()) + " sigmas away, " +
+                (d.verdicts[v].passes() ? "pass" : "FAR") + "\n";
+    text += column("LP-IoU, LP-F, mean IoU", kName) + shortNumber(d.localPatches.shareIoU) + "  " +
+            shortNumber(d.localPatches.shareScore) + "  " + shortNumber(d.localPatches.meanIoU) + "\n";
+    if (d.surface)
+        text += column("surface: mean, rms, Hausdorff", kName) + shortNumber(d.surface->mean) + "  " +
+                shortNumber(d.surface->rootMean) + "  " + shortNumber(d.surface->hausdorff) + "\n";
+    text += "\nnovelty: " + sourceText(d) + "\n";
+    if (d.sourceKind == SourceKind::None) return;
+    const Novelty& n = d.novelty;
+    text += column("voxels in verbatim runs", kName) + shortNumber(n.verbatimShare) + "\n" +
+            column("mean, largest run (voxels)", kName) + shortNumber(n.meanRun) + "  " +
+            shortNumber(n.largestRun) + "\n" + column("share of the reference used", kName) +
+            shortNumber(n.exemplarUsed) + "\n" + column("seam ratio, share of seams", kName) +
+            shortNumber(n.seamRatio) + "  " + shortNumber(n.seamShare) + "\n";
+}
+
+void appendVerdict(const Comparison& comparison, std::size_t i, std::string& text) {
+    const std::vector<Verdict>& verdicts = comparison.distances[i].verdicts;
+    if (verdicts.empty()) {
+        text +=
+            "\nverdict: none; the reference is stationary along no axis, or too small along one; see "
+            "--stationary\n";
+        return;
+    }
+    const auto passed = std::count_if(verdicts.begin(), verdicts.end(),
+                                      [](const Verdict& verdict) { return verdict.passes(); });
+    text += "\nverdict: " + std::string(allPass(comparison.distances[i]) ? "pass" : "FAR") + ", " +
+            std::to_string(passed) + " of " + std::to_string(verdicts.size()) + " within the spread of " +
+            std::to_string(comparison.parts) + " sub-volumes along " + axesText(comparison.stationary) + "\n";
+}
+
+Json triple(const Index3& p) {
+    return Json::array({p.x, p.y, p.z});
+}
+
+Json boxJson(const IndexBox& box) {
+    return Json{{"min", triple(box.min)}, {"max", triple(box.max)}};
+}
+
+Json partsJson(const Components& parts) {
+    constexpr std::size_t kMost = 100;
+    const std::size_t count = std::min(kMost, parts.sizes.size());
+    return Json{{"count", parts.sizes.size()},
+                {"off_the_faces", parts.interior.size()},
+                {"largest_voxels", std::vector<std::uint64_t>(parts.sizes.begin(),
+                                                              parts.sizes.begin() + std::ptrdiff_t(count))}};
+}
+
+Json modelJson(const ModelStatistics& model) {
+    Json statistics = Json::array();
+    for (const Statistic& statistic : model.statistics) {
+        Json entry{{"name", statistic.name}};
+        if (statistic.curve) {
+            entry["curve"] = statistic.values;
+        } else {
+            std::vector<double> world;
+            for (double value : statistic.values)
+                world.push_back(value * std::pow(model.voxelSize, statistic.power));
+            entry["voxels"] = statistic.values;
+            entry["world"] = world;
+        }
+        statistics.push_back(entry);
+    }
+    return Json{{"name", model.name},
+                {"kind", model.domainRecorded ? "texture" : "object"},
+                {"domain", boxJson(model.domain)},
+                {"voxel_size", model.voxelSize},
+                {"statistics", statistics},
+                {"solid", partsJson(model.topology.solid)},
+                {"void", partsJson(model.topology.empty)},
+                {"enclosed_voids", model.topology.enclosed},
+                {"euler_characteristic", model.topology.eulerCharacteristic},
+                {"tunnels", model.domainRecorded ? Json(nullptr) : Json(model.topology.tunnels)},
+                {"crumbs", model.crumbs},
+                {"gradient_error_mean", model.gradient.mean},
+                {"gradient_error_p99", model.gradient.percentile99},
+                {"band_completeness", model.bandCompleteness},
+                {"thickness_sample_voxels", model.thicknessCoarsening}};
+}
+
+Json noveltyJson(const ModelDistances& d) {
+    const char* kind = d.sourceKind == SourceKind::Map        ? "map"
+                       : d.sourceKind == SourceKind::Matching ? "matching"
+                                                              : "none";
+    Json json{{"sources", kind}, {"map_verified_share", d.verified}};
+    if (d.sourceKind == SourceKind::Matching) json["box_looked_at"] = boxJson(d.looked);
+    if (d.sourceKind == SourceKind::None) return json;
+    json["verbatim_share"] = d.novelty.verbatimShare;
+    json["mean_run_voxels"] = d.novelty.meanRun;
+    json["largest_run_voxels"] = d.novelty.largestRun;
+    json["reference_used"] = d.novelty.exemplarUsed;
+    json["seam_ratio"] = d.novelty.seamRatio;
+    json["seam_share"] = d.novelty.seamShare;
+    return json;
+}
+
+Json distancesJson(const ModelDistances& d) {
+    Json scales = Json::array(), verdicts = Json::array();
+    for (std::size_t s = 0; s < d.scales.size(); ++s)
+        scales.push_back({{"patch_voxels", kPatchSide << s},
+                          {"sliced_wasserstein", d.scales[s].wasserstein},
+                          {"coherence", d.scales[s].coherence},
+                          {"completeness", d.scales[s].completeness}});
+    for (const Verdict& v : d.verdicts)
+        verdicts.push_back({{"name", v.name},
+                            {"mean", v.mean},
+                            {"sigma", v.sigma},
+                            {"distance", v.distance},
+                            {"sigmas_away", v.away()},
+                            {"quartile", v.quartile},
+                            {"passes", v.passes()}});
+    return Json{{"patches", scales},
+                {"lp_iou", d.localPatches.shareIoU},
+                {"lp_f", d.localPatches.shareScore},
+                {"lp_mean_iou", d.localPatches.meanIoU},
+                {"surface", d.surface ? Json{{"mean", d.surface->mean},
+                                             {"rms", d.surface->rootMean},
+                                             {"hausdorff", d.surface->hausdorff}}
+                                      : Json(nullptr)},
+                {"novelty", noveltyJson(d)},
+                {"verdicts", verdicts},
+                {"passes", d.verdicts.empty() ? Json(nullptr) : Json(allPass(d))}};
+}
+
+}  // namespace
+
+std::string shortNumber(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", value);
+    return text;
+}
+
+std::string axesText(const std::array<bool, 3>& axes) {
+    std::string text;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (axes[axis]) text += char('x' + axis);
+    return text.empty() ? "none" : text;
+}
+
+bool allPass(const ModelDistances& distances) {
+    return std::all_of(distances.verdicts.begin(), distances.verdicts.end(),
+                       [](const Verdict& verdict) { return verdict.passes(); });
+}
+
+std::string sourceText(const ModelDistances& distances) {
+    const std::string share = shortNumber(100 * distances.verified) + " %";
+    const std::string failed =
+        distances.verified > 0 ? "the map holds for " + share + " of the voxels only and is ignored; " : "";
+    switch (distances.sourceKind) {
+        case SourceKind::Map:
+            return "by the source map, which holds for " + share + " of the voxels";
+        case SourceKind::Matching:
+            return failed + "copies looked for in a box of " + sizeText(distances.looked) + " voxels";
+        default:
+            return failed + "no surface to look at";
+    }
+}
+
+std::string comparisonText(const Comparison& comparison) {
+    std::string text;
+    appendModel("reference", comparison.reference, text);
+    for (std::size_t i = 0; i < comparison.others.size(); ++i) {
+        appendModel("other", comparison.others[i], text);
+        text += "\n";
+        appendStatistics(comparison, i, false, text);
+        if (comparison.reference.voxelSize != 1) {
+            text += "\n";
+            appendStatistics(comparison, i, true, text);
+        }
+        appendCounts(comparison, i, text);
+        appendDistances(comparison, i, text);
+        appendVerdict(comparison, i, text);
+    }
+    if (comparison.yardsticks.empty()) return text;
+    text += "\n" + column("yardstick: 1 is another exemplar", kName) + column("results", kNumber) +
+            column("fresh", kNumber) + column("shifted", kNumber) + "ratio\n";
+    for (const Yardstick& y : comparison.yardsticks)
+        text += column(y.name, kName) + column(shortNumber(y.results), kNumber) +
+                column(shortNumber(y.fresh), kNumber) + column(shortNumber(y.shifted), kNumber) +
+                shortNumber(y.ratio()) + "\n";
+    return text;
+}
+
+nlohmann::ordered_json comparisonJson(const Comparison& comparison) {
+    Json others = Json::array(), yardsticks = Json::array();
+    for (std::size_t i = 0; i < comparison.others.size(); ++i) {
+        Json other = modelJson(comparison.others[i]);
+        other["distances"] = distancesJson(comparison.distances[i]);
+        others.push_back(other);
+    }
+    for (const Yardstick& y : comparison.yardsticks)
+        yardsticks.push_back({{"name", y.name},
+                              {"results", y.results},
+                              {"fresh", y.fresh},
+                              {"shifted", y.shifted},
+                              {"ratio", y.ratio()}});
+    return Json{{"reference", modelJson(comparison.reference)},
+                {"others", others},
+                {"stationary", axesText(comparison.stationary)},
+                {"sub_volumes", comparison.parts},
+                {"crumb_limit_voxels", comparison.crumbLimit},
+                {"curve_reach_voxels", comparison.reach},
+                {"yardstick", yardsticks}};
+}
+
+}  // namespace vdbsynth::cli

@@ -50,4 +50,17 @@ double cosine(double angle) noexcept {
     return quarterTurns(angle, 1);
 }
 
+double arcTangent(double y, double x) noexcept {
+    if (y == 0) return x < 0 ? kPi : 0;
+    if (x < 0) return kPi - arcTangent(y, -x);
+    if (y > x) return kPi / 2 - arcTangent(x, y);
+    // Two halvings bring the tangent under 0.2: tan(a / 2) = t / (1 + sqrt(1 + t^2)).
+    double t = y / x;
+    for (int i = 0; i < 2; ++i) t = t / (1 + std::sqrt(1 + t * t));
+    const double squared = t * t;
+    double sum = 0;
+    for (int n = 21; n >= 1; n -= 2) sum = 1.0 / n - squared * sum;
+    return 4 * t * sum;
+}
+
 }  // namespace vdbsynth

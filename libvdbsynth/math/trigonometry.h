@@ -11,4 +11,7 @@ inline constexpr double kPi = 3.14159265358979323846;
 double sine(double angle) noexcept;
 double cosine(double angle) noexcept;
 
+/// The angle of (x, y) to the x axis [radians], 0..pi, for y >= 0; 0 for (0, 0). Absolute error below 1e-13.
+double arcTangent(double y, double x) noexcept;
+
 }  // namespace vdbsynth

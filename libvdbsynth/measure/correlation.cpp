@@ -10,7 +10,7 @@
 namespace vdbsynth {
 namespace {
 
-constexpr std::size_t kDirections = 96;
+constexpr std::size_t kDirections = 48;
 
 // One of each pair of opposite displacements whose length rounds to r, at most kDirections of them.
 std::vector<Index3> shell(int r) {

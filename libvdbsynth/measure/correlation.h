@@ -15,7 +15,7 @@ struct TwoPointCorrelation {
 
 /// @param reach  longest r [voxels], at least 1; where no pair lies in the box, values are 0
 /// The radial value at r is the mean over displacements whose length rounds to r: all of them where these are
-/// at most 96 up to sign, else 96 spread evenly over the half sphere.
+/// at most 48 up to sign, else 48 spread evenly over the half sphere.
 /// @par Cost    O(48 * reach * voxels / 64)   @par Repeats same bits for any number of threads
 TwoPointCorrelation twoPointCorrelation(const Occupancy& solid, int reach, const RunContext& ctx = {});
 

@@ -163,8 +163,7 @@ void nearestAlong(int axis, Feet& feet, const RunContext& ctx) {
 
 }  // namespace
 
-Distances distancesWithin(const BrickField& field, float scale, float band, Phase phase,
-                          const RunContext& ctx) {
+Distances distancesToSurface(const BrickField& field, float scale, float band, const RunContext& ctx) {
     const Index3 size = field.box().size();
     const std::size_t samples = std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
     requireMemory(ctx, double(samples) * 8, "measuring distances", "compare smaller boxes or larger voxels");
@@ -172,20 +171,18 @@ Distances distancesWithin(const BrickField& field, float scale, float band, Phas
     feet.nearest.resize(samples);
     findFeet(field, scale, feet, ctx);
     for (int axis : {2, 1, 0}) nearestAlong(axis, feet, ctx);
-    Distances result{size, std::vector<float>(samples, 0)};
+    Distances result{size, std::vector<float>(samples)};
     const float none = float(std::max({size.x, size.y, size.z}));
     parallelFor(ctx, std::size_t(size.x), 1, [&](std::size_t begin, std::size_t end) {
         for (int x = int(begin); x < int(end); ++x)
             for (int y = 0; y < size.y; ++y)
                 for (int z = 0; z < size.z; ++z) {
-                    const float own = field.inside({x, y, z}) * scale, known = std::abs(own);
-                    if ((own < 0) != (phase == Phase::Solid)) continue;
+                    const float own = field.inside({x, y, z}) * scale;
                     const std::size_t i = feet.index(x, y, z);
                     const std::int32_t foot = feet.nearest[i];
                     const Vec3f p{float(x), float(y), float(z)};
-                    result.values[i] = known < band    ? known
-                                       : foot == kNone ? none
-                                                       : length(feet.places[std::size_t(foot)] - p);
+                    const float far = foot == kNone ? none : length(feet.places[std::size_t(foot)] - p);
+                    result.values[i] = std::abs(own) < band ? own : own < 0 ? -far : far;
                 }
     });
     return result;

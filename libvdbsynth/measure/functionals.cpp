@@ -1,5 +1,8 @@
 #include "libvdbsynth/measure/functionals.h"
 
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/math/trigonometry.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -90,7 +93,8 @@ struct Side {
 };
 
 // The sides of all faces, those of one edge side by side.
-std::vector<Side> sidesByEdge(const std::vector<Triangle>& faces, std::size_t vertices) {
+std::vector<Side> sidesByEdge(const std::vector<Triangle>& faces, std::size_t vertices,
+                              const RunContext& ctx) {
     std::vector<std::uint32_t> first(vertices + 1, 0);
     const auto visit = [&](const auto& use) {
         for (std::size_t f = 0; f < faces.size(); ++f)
@@ -104,10 +108,13 @@ std::vector<Side> sidesByEdge(const std::vector<Triangle>& faces, std::size_t ve
     std::vector<Side> sides(faces.size() * 3);
     std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
     visit([&](const Side& side) { sides[next[side.low]++] = side; });
-    for (std::size_t v = 0; v < vertices; ++v)
-        std::sort(sides.begin() + first[v], sides.begin() + first[v + 1], [](const Side& a, const Side& b) {
-            return std::tie(a.high, a.face) < std::tie(b.high, b.face);
-        });
+    parallelFor(ctx, vertices, 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v)
+            std::sort(sides.begin() + first[v], sides.begin() + first[v + 1],
+                      [](const Side& a, const Side& b) {
+                          return std::tie(a.high, a.face) < std::tie(b.high, b.face);
+                      });
+    });
     return sides;
 }
 
@@ -118,7 +125,7 @@ double turn(const Mesh& mesh, const std::vector<Triangle>& faces, const Side& a,
     };
     const Vec3d na = normal(faces[a.face]), nb = normal(faces[b.face]);
     if (dot(na, na) == 0 || dot(nb, nb) == 0) return 0;
-    const double angle = std::atan2(length(cross(na, nb)), dot(na, nb));
+    const double angle = arcTangent(length(cross(na, nb)), dot(na, nb));
     // Convex where the far corner of b lies behind a.
     const Triangle& t = faces[b.face];
     std::uint32_t far = t[0];
@@ -152,28 +159,35 @@ double eulerCharacteristic(const Occupancy& solid, Beyond beyond) {
     return double(eighths) / 8;
 }
 
-SurfaceElements surfaceElements(const Mesh& mesh) {
+SurfaceElements surfaceElements(const Mesh& mesh, const RunContext& ctx) {
     SurfaceElements elements;
     const std::vector<Triangle> faces = triangulated(mesh);
-    elements.areas.reserve(faces.size());
-    for (const Triangle& t : faces) {
-        const Vec3d a = corner(mesh, t[0]), b = corner(mesh, t[1]), c = corner(mesh, t[2]);
-        elements.areas.push_back(
-            {cast<float>((a + b + c) * (1.0 / 3)), float(length(cross(b - a, c - a)) / 2)});
-    }
-    const std::vector<Side> sides = sidesByEdge(faces, mesh.points.size());
-    elements.curvatures.reserve(sides.size() / 2);
-    for (std::size_t i = 0; i < sides.size();) {
-        std::size_t end = i;
-        while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high)
-            ++end;
-        if (end - i == 2) {
+    elements.areas.resize(faces.size());
+    parallelFor(ctx, faces.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            const Triangle& t = faces[f];
+            const Vec3d a = corner(mesh, t[0]), b = corner(mesh, t[1]), c = corner(mesh, t[2]);
+            elements.areas[f] = {cast<float>((a + b + c) * (1.0 / 3)),
+                                 float(length(cross(b - a, c - a)) / 2)};
+        }
+    });
+    const std::vector<Side> sides = sidesByEdge(faces, mesh.points.size(), ctx);
+    // A pair of sides stands where its first one does; the rest stays empty and goes.
+    std::vector<SurfaceElements::Element> all(sides.size(), {{}, 0});
+    parallelFor(ctx, sides.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        const auto together = [&](std::size_t i, std::size_t k) {
+            return k < sides.size() && sides[i].low == sides[k].low && sides[i].high == sides[k].high;
+        };
+        for (std::size_t i = begin; i < end; ++i) {
+            if ((i > 0 && together(i, i - 1)) || !together(i, i + 1) || together(i, i + 2)) continue;
             const Vec3d a = corner(mesh, sides[i].low), b = corner(mesh, sides[i].high);
             const double share = length(b - a) * turn(mesh, faces, sides[i], sides[i + 1]) / 2;
-            elements.curvatures.push_back({cast<float>((a + b) * 0.5), float(share)});
+            all[i] = {cast<float>((a + b) * 0.5), float(share)};
         }
-        i = end;
-    }
+    });
+    elements.curvatures.reserve(sides.size() / 2);
+    for (const SurfaceElements::Element& element : all)
+        if (element.value != 0) elements.curvatures.push_back(element);
     return elements;
 }
 

@@ -34,8 +34,8 @@ struct SurfaceElements {
 };
 
 /// @param mesh  closed, faces outward; edges of other than two faces bring in no curvature
-/// @par Cost    O(faces)   @par Repeats yes
-SurfaceElements surfaceElements(const Mesh& mesh);
+/// @par Cost    O(faces)   @par Repeats same bits for any number of threads
+SurfaceElements surfaceElements(const Mesh& mesh, const RunContext& ctx = {});
 
 struct SurfaceFunctionals {
     double area = 0;           ///< [voxels^2]

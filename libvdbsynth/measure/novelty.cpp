@@ -14,8 +14,8 @@ namespace {
 
 constexpr int kStride = 4;
 constexpr double kPatches = 6000;
-constexpr std::size_t kPlaces = 100000;
-constexpr double kNearCost = 1;            // [voxels^2] what may turn out a copy when followed downhill
+constexpr std::size_t kPlaces = 60000;
+constexpr double kNearCost = 0.25;         // [voxels^2] what may turn out a copy when followed downhill
 constexpr double kCopyCost = 0.25 * 0.25;  // [voxels^2]
 
 bool earlier(const SourcedVoxel& a, const SourcedVoxel& b) {

@@ -251,7 +251,9 @@ PatchSource patchSource(std::shared_ptr<const BrickField> field, const PatchSour
         }
         std::vector<Index3> places = placesIn(*field, box, ctx);
         if (places.empty()) break;
-        source.scales.push_back({field, drawn(std::move(places), options.limit, ctx.seed, kLotPurpose)});
+        source.scales.push_back(
+            {field, drawn(std::move(places), scale == 0 ? options.limit : options.limit / 3, ctx.seed,
+                          kLotPurpose)});
     }
     return source;
 }

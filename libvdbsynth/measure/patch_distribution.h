@@ -25,7 +25,7 @@ struct PatchSource {
 
 struct PatchSourceOptions {
     IndexBox box;               ///< [voxels of the field] patches lie within it
-    std::size_t limit = 30000;  ///< most places a scale; where there are more, that many by lot
+    std::size_t limit = 30000;  ///< most places, a third of it at coarser scales; of more, that many by lot
     int scales = kPatchScales;  ///< 1..kPatchScales
 };
 

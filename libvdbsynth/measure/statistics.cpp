@@ -4,6 +4,7 @@
 #include "libvdbsynth/measure/correlation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace vdbsynth {
@@ -37,14 +38,25 @@ void addSurface(const MeasuredModel& model, const IndexBox& box, std::vector<Sta
     all.push_back(number("mean curvature per volume", -2, surface.meanCurvature / volume));
 }
 
-void addLines(const Occupancy& solid, int reach, const char* chordName, const char* curveName,
-              std::vector<Statistic>& all, std::vector<double>* linealPath) {
-    Statistic mean{chordName, 1, false, {}}, chords{curveName, 0, true, {}};
-    for (int axis = 0; axis < 3; ++axis) {
-        const LineStatistics lines = lineStatistics(solid, axis, reach);
-        mean.values.push_back(lines.meanChord);
-        appendSums(chords.values, lines.chords);
-        if (linealPath) append(*linealPath, lines.linealPath);
+// Along x, y and z, of the solid and of the void.
+using LinesByAxis = std::array<LineStatistics, 6>;
+
+LinesByAxis measureLines(const Occupancy& solid, int reach, const RunContext& ctx) {
+    const Occupancy empty = solid.complement();
+    LinesByAxis lines;
+    parallelFor(ctx, lines.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            lines[i] = lineStatistics(i < 3 ? solid : empty, int(i % 3), reach);
+    });
+    return lines;
+}
+
+void addChords(const LinesByAxis& lines, std::size_t first, const std::string& of,
+               std::vector<Statistic>& all) {
+    Statistic mean{"mean chord" + of, 1, false, {}}, chords{"chord lengths" + of, 0, true, {}};
+    for (std::size_t i = first; i < first + 3; ++i) {
+        mean.values.push_back(lines[i].meanChord);
+        appendSums(chords.values, lines[i].chords);
     }
     all.push_back(mean);
     all.push_back(chords);
@@ -62,12 +74,12 @@ void addThickness(const Thickness& thickness, const IndexBox& box, int reach, co
 
 }  // namespace
 
-void prepare(MeasuredModel& model, double limit, const RunContext& ctx) {
-    model.elements = surfaceElements(model.surface);
+void prepare(MeasuredModel& model, int coarsening, const RunContext& ctx) {
+    model.elements = surfaceElements(model.surface, ctx);
     model.solid = Occupancy::fromField(*model.field, ctx);
-    model.thickness = localThickness(*model.field, model.band, Phase::Solid, limit, ctx);
-    if (model.beyond == Beyond::Unknown)
-        model.pores = localThickness(*model.field, model.band, Phase::Void, limit, ctx);
+    const SampledDistances distances = sampleDistances(*model.field, model.band, coarsening, ctx);
+    model.thickness = localThickness(distances, Phase::Solid, ctx);
+    if (model.beyond == Beyond::Unknown) model.pores = localThickness(distances, Phase::Void, ctx);
 }
 
 std::vector<Statistic> measureStatistics(const MeasuredModel& model, const IndexBox& box, int reach,
@@ -82,9 +94,11 @@ std::vector<Statistic> measureStatistics(const MeasuredModel& model, const Index
     all.push_back(number("Euler characteristic per volume", -3, euler / corners));
     addThickness(model.thickness, box, reach, "local thickness", all);
     if (!model.pores.diameter.empty()) addThickness(model.pores, box, reach, "pore size", all);
+    const LinesByAxis lines = measureLines(solid, reach, ctx);
+    addChords(lines, 0, "", all);
+    addChords(lines, 3, " of void", all);
     Statistic path{"lineal path", 0, true, {}};
-    addLines(solid, reach, "mean chord", "chord lengths", all, &path.values);
-    addLines(solid.complement(), reach, "mean chord of void", "chord lengths of void", all, nullptr);
+    for (std::size_t axis = 0; axis < 3; ++axis) append(path.values, lines[axis].linealPath);
     all.push_back(path);
     const TwoPointCorrelation correlation = twoPointCorrelation(solid, reach, ctx);
     all.push_back({"two-point correlation", 0, true, correlation.radial});
@@ -94,12 +108,17 @@ std::vector<Statistic> measureStatistics(const MeasuredModel& model, const Index
     return all;
 }
 
-Topology measureTopology(const MeasuredModel& model) {
+Topology measureTopology(const MeasuredModel& model, const RunContext& ctx) {
     const bool whole = model.beyond == Beyond::Void;
     const Occupancy solid = whole ? model.solid : model.solid.window(model.counted);
     Topology topology;
-    topology.solid = findComponents(solid, Neighbours::All);
-    topology.empty = findComponents(solid.complement(), Neighbours::Faces);
+    parallelFor(ctx, 2, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            if (i == 0)
+                topology.solid = findComponents(solid, Neighbours::All);
+            else
+                topology.empty = findComponents(solid.complement(), Neighbours::Faces);
+    });
     topology.enclosed = double(topology.empty.interior.size());
     const double euler = eulerCharacteristic(solid, model.beyond);
     topology.eulerCharacteristic =

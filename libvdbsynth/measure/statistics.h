@@ -23,9 +23,9 @@ struct MeasuredModel {
 };
 
 /// Fills elements, solid, thickness and pores from the rest.
-/// @param limit  most samples that thickness works on, see localThickness
+/// @param coarsening  side of the samples that thickness works on [voxels]: 1, 2, 4 ...
 /// @throw Error Memory, Cancelled
-void prepare(MeasuredModel& model, double limit, const RunContext& ctx = {});
+void prepare(MeasuredModel& model, int coarsening, const RunContext& ctx = {});
 
 /// One statistic of a box: a number, or a curve.
 struct Statistic {
@@ -50,7 +50,7 @@ struct Topology {
     double enclosed = 0;             ///< parts of the void that touch no face
     double tunnels = 0;              ///< first Betti number, of a whole object only
 };
-Topology measureTopology(const MeasuredModel& model);
+Topology measureTopology(const MeasuredModel& model, const RunContext& ctx = {});
 
 /// How true to a distance the field is where |value| < 1: mean and 99th percentile of | |grad| - 1 |, by
 /// central or upwind differences, whichever is nearer (a ridge inside a wall has no central gradient). Two

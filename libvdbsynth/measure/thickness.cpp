@@ -9,14 +9,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
-#include <utility>
 
 namespace vdbsynth {
 namespace {
 
-constexpr float kMargin = 0.35f;  // [samples] around a ball, for those that balls left out nearly held alone
+// [samples] around a ball that count as held: those that the balls left out would have held, and on a coarse
+// lattice those of a sample whose middle is outside.
+float marginOf(int factor) {
+    return factor == 1 ? 0.35f : 0.6f;
+}
+
 constexpr float kDrawnRadius = 16;  // [samples] of the largest ball that is drawn sample by sample
 
 struct Ball {
@@ -32,18 +37,37 @@ struct Lattice {
     std::vector<float> diameter{};  // [size] in samples of the finest lattice
 };
 
-// A ball counts unless a neighbour's holds it all.
-bool isRidge(const Distances& distances, const Index3& p, float d) {
-    const Index3& size = distances.size;
-    for (int x = std::max(0, p.x - 1); x <= std::min(size.x - 1, p.x + 1); ++x)
-        for (int y = std::max(0, p.y - 1); y <= std::min(size.y - 1, p.y + 1); ++y)
-            for (int z = std::max(0, p.z - 1); z <= std::min(size.z - 1, p.z + 1); ++z) {
-                const float apart =
-                    std::sqrt(float(std::abs(x - p.x) + std::abs(y - p.y) + std::abs(z - p.z)));
-                if (apart > 0 && distances.at({x, y, z}) >= d + apart * 0.96f) return false;
-            }
-    return true;
+// Distances within one phase: positive there, negative in the other.
+struct PhaseDistances {
+    const Distances& distances;
+    float sign;
+    float at(const Index3& p) const { return sign * distances.at(p); }
+};
+
+// Away from every ridge distances grow as fast as one goes from the surface, and the ball lies in the next
+// one on the way. Within a sample of a ridge the difference across two samples shows that they do not. Writes
+// the squared slope of a whole row.
+void slopesOfRow(const Distances& d, int x, int y, std::vector<float>& squared) {
+    const Index3& size = d.size;
+    const auto row = [&](int i, int k) {
+        return d.values.data() + d.index({std::clamp(i, 0, size.x - 1), std::clamp(k, 0, size.y - 1), 0});
+    };
+    const auto share = [](int at, int n) { return at == 0 || at == n - 1 ? 1.f : 0.5f; };
+    const float *west = row(x - 1, y), *east = row(x + 1, y), *south = row(x, y - 1), *north = row(x, y + 1),
+                *here = row(x, y);
+    const float alongX = share(x, size.x), alongY = share(y, size.y);
+    const auto slope = [&](int z, int low, int high, float alongZ) {
+        const float a = (east[z] - west[z]) * alongX, b = (north[z] - south[z]) * alongY,
+                    c = (here[high] - here[low]) * alongZ;
+        return a * a + b * b + c * c;
+    };
+    const int last = size.z - 1;
+    squared[0] = slope(0, 0, std::min(1, last), 1.f);
+    for (int z = 1; z < last; ++z) squared[std::size_t(z)] = slope(z, z - 1, z + 1, 0.5f);
+    if (last > 0) squared[std::size_t(last)] = slope(last, last - 1, last, 1.f);
 }
+
+constexpr float kRidgeSlope = 0.95f;
 
 // Where a ball may stand around a sample, on a lattice of quarters, and its ways to the 27 samples around.
 struct Stands {
@@ -69,15 +93,15 @@ struct Stands {
 // The ball that stands best within half a sample of a ridge sample p. From a neighbour q on, distances grow
 // by at most the way: min over q of d(q) + |c - q| bounds the radius at c, and is it where one of the q lies
 // on the line from c to the surface.
-Ball bestBall(const Distances& distances, const Index3& p) {
+Ball bestBall(const PhaseDistances& d, const Index3& p) {
     static const Stands stands;
     std::array<float, Stands::kPadded> near;
     near.fill(1e9f);
     for (int k = 0; k < Stands::kNeighbours; ++k) {
         const Index3 q = p + Index3{k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1};
-        if (IndexBox::fromSize(distances.size).contains(q)) near[std::size_t(k)] = distances.at(q);
+        if (IndexBox::fromSize(d.distances.size).contains(q)) near[std::size_t(k)] = d.at(q);
     }
-    float radius = distances.at(p);
+    float radius = d.at(p);
     Index3 best{0, 0, 0};
     for (const int step : {2, 1}) {
         const Index3 around = best;
@@ -109,35 +133,66 @@ int levelFor(float radius) {
     return factor;
 }
 
-// The balls to draw, each on the lattice for its size; on a coarse one only the largest in a cell counts.
-std::map<int, Lattice> ballsOf(const Distances& distances, const RunContext& ctx) {
-    const Index3& size = distances.size;
-    std::vector<std::vector<Ball>> planes{static_cast<std::size_t>(size.x)};
-    parallelFor(ctx, std::size_t(size.x), 1, [&](std::size_t begin, std::size_t end) {
-        for (int x = int(begin); x < int(end); ++x)
-            for (int y = 0; y < size.y; ++y)
-                for (int z = 0; z < size.z; ++z) {
-                    const float d = distances.at({x, y, z});
-                    if (d > 0 && isRidge(distances, {x, y, z}, d))
-                        planes[std::size_t(x)].push_back(bestBall(distances, {x, y, z}));
+// Side of the cells [samples of its lattice] of which only the largest ball is drawn: two balls of radius r
+// whose centres are 1.5 sides apart leave out less than the margin between them.
+int cellFor(float radius) {
+    return radius < 3 ? 1 : radius < 10 ? 2 : 3;
+}
+
+// A sample where a ball may stand, the lattice that it would be drawn on, and the cell of which it may be the
+// largest, in one number.
+struct Candidate {
+    std::uint64_t cell;
+    Index3 place;
+    float radius;
+    int factor;
+};
+
+Candidate candidateFor(const Index3& p, float radius) {
+    const int factor = levelFor(radius), side = factor * cellFor(radius / float(factor));
+    std::uint64_t number = std::uint64_t(side);  // 1, 2, 3 or a power of two times 2 or 3: no two alike
+    for (int axis = 0; axis < 3; ++axis) number = number << 17 | std::uint64_t(p[axis] / side);
+    return {number, p, radius, factor};
+}
+
+// Leaves the largest ball of each cell, the first of several; in the order of the cells.
+void keepLargest(std::vector<Candidate>& all) {
+    std::stable_sort(all.begin(), all.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.cell < b.cell; });
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (kept == 0 || all[kept - 1].cell != all[i].cell)
+            all[kept++] = all[i];
+        else if (all[i].radius > all[kept - 1].radius)
+            all[kept - 1] = all[i];
+    all.resize(kept);
+}
+
+// The balls to draw, each on the lattice for its size.
+std::map<int, Lattice> ballsOf(const PhaseDistances& d, const RunContext& ctx) {
+    const Index3& size = d.distances.size;
+    constexpr int kPlanes = 12;  // whole cells of most sizes
+    std::vector<std::vector<Candidate>> slabs((std::size_t(size.x) + kPlanes - 1) / kPlanes);
+    std::vector<std::vector<Ball>> balls(slabs.size());
+    parallelFor(ctx, slabs.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t slab = begin; slab < end; ++slab) {
+            std::vector<float> squared(static_cast<std::size_t>(size.z));
+            for (int x = int(slab) * kPlanes; x < std::min(size.x, int(slab + 1) * kPlanes); ++x)
+                for (int y = 0; y < size.y; ++y) {
+                    slopesOfRow(d.distances, x, y, squared);
+                    for (int z = 0; z < size.z; ++z)
+                        if (squared[std::size_t(z)] < kRidgeSlope * kRidgeSlope && d.at({x, y, z}) > 0)
+                            slabs[slab].push_back(candidateFor({x, y, z}, d.at({x, y, z})));
                 }
+            keepLargest(slabs[slab]);
+            for (const Candidate& candidate : slabs[slab])
+                balls[slab].push_back(bestBall(d, candidate.place));
+        }
     });
     std::map<int, Lattice> lattices;
-    std::map<int, std::map<Index3, Ball>> coarse;
-    for (const std::vector<Ball>& plane : planes)
-        for (const Ball& ball : plane) {
-            const int factor = levelFor(ball.radius);
-            if (factor == 1) {
-                lattices[1].balls.push_back(ball);
-                continue;
-            }
-            const Index3 cell{int(ball.centre.x + 0.5f) / factor, int(ball.centre.y + 0.5f) / factor,
-                              int(ball.centre.z + 0.5f) / factor};
-            Ball& kept = coarse[factor].emplace(cell, ball).first->second;
-            if (ball.radius > kept.radius) kept = ball;
-        }
-    for (const auto& [factor, cells] : coarse)
-        for (const auto& [cell, ball] : cells) lattices[factor].balls.push_back(ball);
+    for (std::size_t slab = 0; slab < slabs.size(); ++slab)
+        for (std::size_t i = 0; i < slabs[slab].size(); ++i)
+            lattices[slabs[slab][i].factor].balls.push_back(balls[slab][i]);
     for (auto& [factor, lattice] : lattices) {
         lattice.factor = factor;
         lattice.size = {(size.x + factor - 1) / factor, (size.y + factor - 1) / factor,
@@ -155,7 +210,7 @@ std::map<int, Lattice> ballsOf(const Distances& distances, const RunContext& ctx
 // Raises the samples of planes [low, high] of x within a ball to its diameter.
 void draw(const Ball& ball, int low, int high, Lattice& lattice) {
     const float diameter = 2 * ball.radius * float(lattice.factor);
-    const float squared = (ball.radius + kMargin) * (ball.radius + kMargin);
+    const float held = ball.radius + marginOf(lattice.factor), squared = held * held;
     const Index3& size = lattice.size;
     for (int x = low; x <= high; ++x) {
         const float dx = float(x) - ball.centre.x, flat = squared - dx * dx;
@@ -180,14 +235,15 @@ void drawAll(Lattice& lattice, const RunContext& ctx) {
     const Index3& size = lattice.size;
     lattice.diameter.assign(std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z), 0);
     constexpr int kPlanes = 4;
+    const float margin = marginOf(lattice.factor);
     // Each chunk of planes draws its part of the balls near it; balls are in order of x, up to kDrawnRadius.
     const auto before = [](const Ball& ball, float x) { return ball.centre.x < x; };
     parallelFor(ctx, std::size_t(size.x), kPlanes, [&](std::size_t begin, std::size_t end) {
         const float low = float(begin) - kDrawnRadius - 2, high = float(end) + kDrawnRadius + 2;
         auto ball = std::lower_bound(lattice.balls.begin(), lattice.balls.end(), low, before);
         for (; ball != lattice.balls.end() && ball->centre.x <= high; ++ball) {
-            const int first = std::max(int(begin), int(std::ceil(ball->centre.x - ball->radius - kMargin)));
-            const int last = std::min(int(end) - 1, int(std::floor(ball->centre.x + ball->radius + kMargin)));
+            const int first = std::max(int(begin), int(std::ceil(ball->centre.x - ball->radius - margin)));
+            const int last = std::min(int(end) - 1, int(std::floor(ball->centre.x + ball->radius + margin)));
             draw(*ball, first, last, lattice);
         }
     });
@@ -195,18 +251,22 @@ void drawAll(Lattice& lattice, const RunContext& ctx) {
 
 }  // namespace
 
-Thickness localThickness(const BrickField& field, float band, Phase phase, double limit,
-                         const RunContext& ctx) {
+SampledDistances sampleDistances(const BrickField& field, float band, int coarsening, const RunContext& ctx) {
     const BrickField* samples = &field;
     BrickField coarse;
     int step = 1;
-    for (; double(samples->box().volume()) > limit; step *= 2) {
+    for (; step < coarsening; step *= 2) {
         coarse = halved(*samples, ctx);
         samples = &coarse;
     }
     // A mean over voxels of which some lie beyond the band is no distance.
     const float known = step == 1 ? band : std::max(0.f, band / float(step) - 0.9f);
-    Distances distances = distancesWithin(*samples, 1.f / float(step), known, phase, ctx);
+    return {distancesToSurface(*samples, 1.f / float(step), known, ctx), step};
+}
+
+Thickness localThickness(const SampledDistances& sampled, Phase phase, const RunContext& ctx) {
+    const PhaseDistances distances{sampled.distances, phase == Phase::Solid ? -1.f : 1.f};
+    const int step = sampled.coarsening;
     std::map<int, Lattice> lattices = ballsOf(distances, ctx);
     for (auto& [factor, lattice] : lattices) {
         std::stable_sort(lattice.balls.begin(), lattice.balls.end(),
@@ -214,26 +274,25 @@ Thickness localThickness(const BrickField& field, float band, Phase phase, doubl
         drawAll(lattice, ctx);
     }
     Thickness result;
-    result.size = distances.size;
+    result.size = sampled.distances.size;
     result.coarsening = step;
-    result.diameter = std::move(distances.values);
+    result.diameter.assign(sampled.distances.values.size(), 0);
     const Index3& size = result.size;
     parallelFor(ctx, std::size_t(size.x), 4, [&](std::size_t begin, std::size_t end) {
         for (int x = int(begin); x < int(end); ++x)
             for (int y = 0; y < size.y; ++y)
                 for (int z = 0; z < size.z; ++z) {
-                    float& value = result.diameter[(std::size_t(x) * std::size_t(size.y) + std::size_t(y)) *
-                                                       std::size_t(size.z) +
-                                                   std::size_t(z)];
-                    if (value <= 0) continue;
-                    value *= 2 * float(step);  // its own ball
+                    const float own = distances.at({x, y, z});
+                    if (phase == Phase::Solid ? own <= 0 : own < 0) continue;
+                    float diameter = 2 * own;
                     for (const auto& [factor, lattice] : lattices) {
                         const std::size_t cell = (std::size_t(x / factor) * std::size_t(lattice.size.y) +
                                                   std::size_t(y / factor)) *
                                                      std::size_t(lattice.size.z) +
                                                  std::size_t(z / factor);
-                        value = std::max(value, lattice.diameter[cell] * float(step));
+                        diameter = std::max(diameter, lattice.diameter[cell]);
                     }
+                    result.diameter[sampled.distances.index({x, y, z})] = diameter * float(step);
                 }
     });
     return result;

@@ -5,24 +5,34 @@
 
 namespace vdbsynth {
 
-/// Local thickness at every voxel of a phase: the diameter of the largest ball that lies in the phase and
-/// holds the voxel's centre [hildebrand1997]. Of the void it is known as the pore size.
+/// Which side of the surface is meant.
+enum class Phase { Solid, Void };
+
+/// Distances on a field's voxels, or on coarser samples of it.
+struct SampledDistances {
+    Distances distances;
+    int coarsening = 1;  ///< side of a sample in the voxels of the field: 1, 2, 4 ...
+};
+/// @param field  [voxels], box beginning at 0, right where |value| < `band`
+/// @param coarsening  side of a sample [voxels]: 1, 2, 4 ...
+/// @throw Error Memory, Cancelled   @par Repeats same bits for any number of threads
+SampledDistances sampleDistances(const BrickField& field, float band, int coarsening,
+                                 const RunContext& ctx = {});
+
+/// Local thickness at every sample of a phase: the diameter of the largest ball that lies in the phase and
+/// holds the sample [hildebrand1997]. Of the void it is known as the pore size.
 struct Thickness {
     Index3 size;
-    int coarsening = 1;           ///< side of one sample in the voxels of the field: 1, 2, 4 ...
+    int coarsening = 1;           ///< as of the distances
     std::vector<float> diameter;  ///< [size, x slowest] in the voxels of the field; 0 in the other phase
 };
 
-/// Distances are those of distancesWithin. Balls stand within half a sample of the samples whose ball lies in
-/// no neighbour's, where the distances around bound the radius least. Balls of a radius over 16 samples are
-/// drawn on a lattice coarser by a power of two, at least 8 of its samples a radius. Balls may reach out of
-/// the box: what lies there is not known.
-/// @param field  [voxels], box beginning at 0, right where |value| < `band`
-/// @param limit  most samples; the field is halved until it has no more
-/// @throw Error Memory, Cancelled
-/// @par Cost    memory 12 bytes a sample   @par Repeats same bits for any number of threads
-Thickness localThickness(const BrickField& field, float band, Phase phase, double limit,
-                         const RunContext& ctx = {});
+/// Balls stand near the ridges of the distances, where, within half a sample, the distances around bound
+/// their radius least; of those close together in relation to their radius the largest is drawn. Balls of a
+/// radius over 16 samples are drawn on a lattice coarser by a power of two, at least 8 of its samples a
+/// radius. Balls may reach out of the box: what lies there is not known.
+/// @par Cost    memory 8 bytes a sample   @par Repeats same bits for any number of threads
+Thickness localThickness(const SampledDistances& sampled, Phase phase, const RunContext& ctx = {});
 
 /// Mean, deviation and distribution of the thickness over the phase's voxels in a box.
 struct ThicknessSummary {

@@ -18,8 +18,8 @@ namespace {
 
 constexpr int kMargin = 4;               // [voxels] around a whole object: its band and one more
 constexpr int kCapMargin = 2;            // [voxels] at a domain's face where caps bend the field
-constexpr double kThicknessLimit = 2e8;  // samples; above, thickness is measured at half the resolution
-constexpr std::size_t kProjected = 4000, kMatched = 300;
+constexpr double kThicknessLimit = 1e7;  // [voxels] of the largest model; above, all are halved for it
+constexpr std::size_t kProjected = 4000, kMatched = 120;
 constexpr std::size_t kFewestPatches = 20;  // of a sub-volume, to say anything
 constexpr int kShortestPart = 16;           // [voxels] side of a sub-volume
 constexpr int kLongestReach = 64;           // [voxels]
@@ -38,8 +38,8 @@ Mesh surfaceOf(const openvdb::FloatGrid& grid, const Index3& corner, const RunCo
     return mesh;
 }
 
-Prepared prepared(const std::string& name, const LevelSet& levelSet, const RunContext& ctx) {
-    Stage stage(ctx, "measuring " + name, 3);
+Prepared prepared(const std::string& name, const LevelSet& levelSet, int coarsening, const RunContext& ctx) {
+    Stage reading(ctx, name + ": meshing", 1);
     const bool whole = !levelSet.domainRecorded;
     const IndexBox box = levelSet.domain.expanded(whole ? kMargin : 0);
     requireMemory(ctx, double(box.volume()) * (0.25 + 8.0 / 512) + double(activeVoxels(*levelSet.grid)) * 40,
@@ -53,15 +53,17 @@ Prepared prepared(const std::string& name, const LevelSet& levelSet, const RunCo
     model.counted = {levelSet.domain.min - box.min, levelSet.domain.max - box.min};
     model.beyond = whole ? Beyond::Void : Beyond::Unknown;
     model.surface = surfaceOf(*levelSet.grid, box.min, ctx);
-    stage.advance();
-    prepare(model, kThicknessLimit, ctx);
-    stage.advance();
+    reading.advance();
+    Stage thickness(ctx, name + ": thickness", 1);
+    prepare(model, coarsening, ctx);
+    thickness.advance();
+    Stage drawing(ctx, name + ": patches", 1);
     PatchSourceOptions patches;
     patches.box = whole ? IndexBox::fromSize(box.size()) : model.counted.expanded(-kCapMargin);
     result.patches = patchSource(model.field, patches, ctx);
     for (const PatchScale& scale : result.patches.scales)
         result.projections.push_back(project(scale, kProjected, ctx));
-    stage.advance();
+    drawing.advance();
     return result;
 }
 
@@ -88,6 +90,15 @@ int reachFor(const std::vector<Index3>& sizes) {
     return std::max(1, reach);
 }
 
+// Thickness is measured on samples of one size for all models, so that it can be compared.
+int coarseningFor(const CompareInput& reference, const std::vector<CompareInput>& others) {
+    double largest = double(reference.model.domain.volume());
+    for (const CompareInput& other : others) largest = std::max(largest, double(other.model.domain.volume()));
+    int coarsening = 1;
+    while (largest / coarsening / coarsening / coarsening > kThicknessLimit) coarsening *= 2;
+    return coarsening;
+}
+
 // Parts of the solid whose size tells what a crumb is, largest first: whole ones where there are any.
 const std::vector<std::uint64_t>& wholeParts(const Topology& topology) {
     return topology.solid.interior.empty() ? topology.solid.sizes : topology.solid.interior;
@@ -108,18 +119,20 @@ std::size_t countCrumbs(const MeasuredModel& model, const Topology& topology, st
 
 ModelStatistics statisticsOf(const CompareInput& input, const Prepared& prepared, int reach,
                              const RunContext& ctx) {
+    Stage stage(ctx, input.name + ": statistics", 1);
     ModelStatistics result;
     result.name = input.name;
     result.domain = input.model.domain;
     result.domainRecorded = input.model.domainRecorded;
     result.voxelSize = voxelSizeOf(*input.model.grid);
     result.statistics = measureStatistics(prepared.model, prepared.model.counted, reach, ctx);
-    result.topology = measureTopology(prepared.model);
+    result.topology = measureTopology(prepared.model, ctx);
     result.gradient = measureGradient(prepared.model, ctx);
     const BandQuality band = measureBand(*input.model.grid, ctx);
     const double near = double(band.measured + band.missingNeighbours);
     result.bandCompleteness = near > 0 ? double(band.measured) / near : 1;
     result.thicknessCoarsening = prepared.model.thickness.coarsening;
+    stage.advance();
     return result;
 }
 
@@ -198,7 +211,7 @@ void measureSources(const CompareInput& input, const Prepared& result, const Pre
 
 ModelDistances distancesOf(const CompareInput& reference, const Prepared& to, const CompareInput& other,
                            const Prepared& from, const RunContext& ctx) {
-    Stage stage(ctx, "comparing " + other.name, 3);
+    Stage stage(ctx, other.name + ": patches beside the reference's", 1);
     ModelDistances result;
     const double far = 1e30;
     for (std::size_t s = 0; s < std::min(to.patches.scales.size(), from.patches.scales.size()); ++s) {
@@ -207,17 +220,17 @@ ModelDistances distancesOf(const CompareInput& reference, const Prepared& to, co
                                  std::sqrt(matchPatches(b, a, kMatched, far, ctx).mean),
                                  std::sqrt(matchPatches(a, b, kMatched, far, ctx).mean)});
     }
-    stage.advance();
     const bool whole = from.model.beyond == Beyond::Void;
     result.localPatches =
         localPatchSimilarity(to.model.solid.window(to.model.counted),
                              whole ? from.model.solid : from.model.solid.window(from.model.counted), ctx);
     stage.advance();
+    Stage last(ctx, other.name + ": novelty", 1);
     const Mesh mesh = inReferenceVoxels(reference.model, to, other.model, from);
     if (to.model.surface.faceCount() > 0 && mesh.faceCount() > 0 && inOnePlace(mesh, to))
         result.surface = surfaceDistance(to.model.surface, mesh, ctx);
     measureSources(other, from, to, result, ctx);
-    stage.advance();
+    last.advance();
     return result;
 }
 
@@ -229,22 +242,31 @@ struct Spread {
 
 Spread spreadOf(const Prepared& reference, const std::vector<IndexBox>& parts, int reach,
                 const RunContext& ctx) {
-    Stage stage(ctx, "measuring the reference's sub-volumes", parts.size());
+    Stage stage(ctx, "measuring the reference's sub-volumes", 1);
+    std::vector<std::vector<Statistic>> all(parts.size());
+    std::vector<std::vector<double>> far(parts.size());
+    parallelFor(ctx, parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t part = begin; part < end; ++part) {
+            all[part] = measureStatistics(reference.model, parts[part], reach, ctx);
+            for (std::size_t s = 0; s < reference.projections.size(); ++s) {
+                const Projections& whole = reference.projections[s];
+                const Projections inside = within(whole, parts[part], int(s));
+                far[part].push_back(
+                    inside.places.size() < kFewestPatches
+                        ? -1
+                        : slicedWasserstein(inside, within(whole, parts[part], int(s), false), ctx));
+            }
+        }
+    });
     Spread spread;
     spread.wasserstein.resize(reference.projections.size());
-    for (const IndexBox& part : parts) {
-        const std::vector<Statistic> all = measureStatistics(reference.model, part, reach, ctx);
-        spread.statistics.resize(all.size());
-        for (std::size_t i = 0; i < all.size(); ++i) spread.statistics[i].push_back(all[i]);
-        for (std::size_t s = 0; s < reference.projections.size(); ++s) {
-            const Projections& whole = reference.projections[s];
-            const Projections inside = within(whole, part, int(s));
-            if (inside.places.size() >= kFewestPatches)
-                spread.wasserstein[s].push_back(
-                    slicedWasserstein(inside, within(whole, part, int(s), false), ctx));
-        }
-        stage.advance();
+    spread.statistics.resize(all.front().size());
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        for (std::size_t i = 0; i < all[part].size(); ++i) spread.statistics[i].push_back(all[part][i]);
+        for (std::size_t s = 0; s < far[part].size(); ++s)
+            if (far[part][s] >= 0) spread.wasserstein[s].push_back(far[part][s]);
     }
+    stage.advance();
     // A scale whose patches do not fit into the parts says nothing.
     for (std::vector<double>& distances : spread.wasserstein)
         if (distances.size() < parts.size()) distances.clear();
@@ -326,7 +348,7 @@ std::vector<Yardstick> yardsticksOf(const CompareInput& reference, const Prepare
         add(comparison.others[i].statistics, others[i], 1.0 / double(others.size()), &Yardstick::results);
     const auto measure = [&](const LevelSet& model, const std::string& name, double share,
                              double Yardstick::*member) {
-        const Prepared fresh = prepared(name, model, ctx);
+        const Prepared fresh = prepared(name, model, to.model.thickness.coarsening, ctx);
         add(measureStatistics(fresh.model, fresh.model.counted, comparison.reach, ctx), fresh, share, member);
     };
     measure(shiftedByHalf(reference.model, ctx), "the shifted reference", 1, &Yardstick::shifted);
@@ -375,7 +397,8 @@ Comparison compareModels(const CompareInput& reference, const std::vector<Compar
                                              "tell what size to make; crop it to a box first");
     const ThreadLimit limit(ctx);
     Comparison result;
-    const Prepared to = prepared(reference.name, reference.model, ctx);
+    const int coarsening = coarseningFor(reference, others);
+    const Prepared to = prepared(reference.name, reference.model, coarsening, ctx);
     result.stationary = options.stationary.value_or(cutAxes(to.model));
     const std::vector<IndexBox> parts = subVolumes(to.model.counted, result.stationary, kShortestPart);
     result.parts = parts.size();
@@ -388,7 +411,7 @@ Comparison compareModels(const CompareInput& reference, const std::vector<Compar
     const Spread spread = parts.empty() ? Spread{} : spreadOf(to, parts, result.reach, ctx);
     std::vector<Prepared> measured;
     for (const CompareInput& other : others) {
-        measured.push_back(prepared(other.name, other.model, ctx));
+        measured.push_back(prepared(other.name, other.model, coarsening, ctx));
         result.others.push_back(statisticsOf(other, measured.back(), result.reach, ctx));
         ModelStatistics& statistics = result.others.back();
         statistics.crumbs = countCrumbs(measured.back().model, statistics.topology, result.crumbLimit);

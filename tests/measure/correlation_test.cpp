@@ -82,8 +82,8 @@ TEST_CASE("twoPointCorrelation: the radial value is the mean over all displaceme
                     hits += double(countPairs(solid, solid, {x, y, z}));
                     pairs += double(30 - std::abs(x)) * (28 - std::abs(y)) * (33 - std::abs(z));
                 }
-        // From r = 5 on a part of the shell stands for all of it.
-        CHECK(s2.radial[std::size_t(r)] == Approx(hits / pairs).epsilon(r <= 3 ? 1e-9 : 0.02));
+        // From r = 3 on a part of the shell stands for all of it.
+        CHECK(s2.radial[std::size_t(r)] == Approx(hits / pairs).epsilon(r <= 2 ? 1e-9 : 0.03));
     }
     RunContext one;
     one.threads = 1;

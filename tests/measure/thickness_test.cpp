@@ -17,39 +17,37 @@ BrickField distances(const Index3& size, float band, const std::function<double(
     });
 }
 
-ThicknessSummary solidSummary(const BrickField& field, double limit = 1e9) {
-    return summarize(localThickness(field, 3, Phase::Solid, limit), field.box(), 40);
+ThicknessSummary solidSummary(const BrickField& field, int coarsening = 1) {
+    return summarize(localThickness(sampleDistances(field, 3, coarsening), Phase::Solid), field.box(), 40);
 }
 
 }  // namespace
 
-TEST_CASE("distancesWithin: within a third of a voxel of a ball's true distances", "[measure][oracle]") {
+TEST_CASE("distancesToSurface: within a third of a voxel of a ball's true distances", "[measure][oracle]") {
     const Vec3d centre{31.4, 30.8, 32.1};
     const BrickField field =
         distances({64, 64, 64}, 3, [&](const Vec3d& p) { return length(p - centre) - 20; });
-    const Distances inside = distancesWithin(field, 1, 3, Phase::Solid);
-    const Distances outside = distancesWithin(field, 1, 3, Phase::Void);
+    const Distances all = distancesToSurface(field, 1, 3);
     double worst = 0, sum = 0;
     for (int x = 0; x < 64; ++x)
         for (int y = 0; y < 64; ++y)
             for (int z = 0; z < 64; ++z) {
                 const double truth = length(Vec3d{double(x), double(y), double(z)} - centre) - 20;
-                const double here = double(truth < 0 ? inside.at({x, y, z}) : outside.at({x, y, z}));
-                worst = std::max(worst, std::abs(here - std::abs(truth)));
-                sum += std::abs(here - std::abs(truth));
-                CHECK(double(truth < 0 ? outside.at({x, y, z}) : inside.at({x, y, z})) == 0);
+                const double off = std::abs(double(all.at({x, y, z})) - truth);
+                worst = std::max(worst, off);
+                sum += off;
             }
     CHECK(worst < 0.34);
     CHECK(sum / (64 * 64 * 64) < 0.05);
 }
 
-TEST_CASE("distancesWithin: the nearest voxel is the nearest", "[measure][oracle]") {
+TEST_CASE("distancesToSurface: the nearest foot is the nearest", "[measure][oracle]") {
     // Feet are where single voxels of a surface say; the brute search is over the same feet.
     const Index3 size{17, 13, 15};
     const BrickField solid = test::fieldFrom(size, [](const Index3& p) {
         return Random(2, std::uint64_t((p.x * 50 + p.y) * 50 + p.z)).uniform() < 0.02 ? 0.f : 3.f;
     });
-    const Distances outside = distancesWithin(solid, 1, 0, Phase::Void);
+    const Distances outside = distancesToSurface(solid, 1, 0);
     for (int n = 0; n < size.x * size.y * size.z; ++n) {
         const Index3 p{n / size.z / size.y, n / size.z % size.y, n % size.z};
         double best = 1e9;
@@ -60,8 +58,8 @@ TEST_CASE("distancesWithin: the nearest voxel is the nearest", "[measure][oracle
         }
         REQUIRE(double(outside.at(p)) == Approx(best).margin(1e-4));
     }
-    const Distances nothing = distancesWithin(BrickField(solid.box(), -3.f), 1, 0, Phase::Solid);
-    CHECK(nothing.at({3, 3, 3}) == 17);
+    const Distances nothing = distancesToSurface(BrickField(solid.box(), -3.f), 1, 0);
+    CHECK(nothing.at({3, 3, 3}) == -17);
 }
 
 TEST_CASE("localThickness: a ball is as thick as its diameter, everywhere", "[measure][oracle]") {
@@ -86,17 +84,17 @@ TEST_CASE("localThickness: slabs, cylinders and the space between", "[measure][o
     CHECK(solidSummary(cylinder).mean == Approx(26.4).margin(1.0));
     const BrickField gap =
         distances({60, 60, 60}, 3, [](const Vec3d& p) { return 5.2 - std::abs(p.z - 29.7); });
-    CHECK(summarize(localThickness(gap, 3, Phase::Void, 1e9), gap.box(), 40).mean ==
+    CHECK(summarize(localThickness(sampleDistances(gap, 3, 1), Phase::Void), gap.box(), 40).mean ==
           Approx(10.4).margin(1.0));
 }
 
 TEST_CASE("localThickness: at half the resolution the same within a voxel and a half", "[measure][oracle]") {
     const BrickField slab =
         distances({60, 60, 60}, 3, [](const Vec3d& p) { return std::abs(p.z - 29.7) - 6.3; });
-    const Thickness half = localThickness(slab, 3, Phase::Solid, 30000);
+    const Thickness half = localThickness(sampleDistances(slab, 3, 2), Phase::Solid);
     CHECK(half.coarsening == 2);
     CHECK(summarize(half, slab.box(), 40).mean == Approx(12.6).margin(1.5));
-    const Thickness quarter = localThickness(slab, 3, Phase::Solid, 4000);
+    const Thickness quarter = localThickness(sampleDistances(slab, 3, 4), Phase::Solid);
     CHECK(quarter.coarsening == 4);
     CHECK(summarize(quarter, slab.box(), 40).mean == Approx(12.6).margin(3));
 }
@@ -104,19 +102,19 @@ TEST_CASE("localThickness: at half the resolution the same within a voxel and a 
 TEST_CASE("localThickness: is the largest ball that holds the voxel, by search over all balls",
           "[measure][oracle]") {
     const BrickField field = test::ballsField({26, 24, 25}, 8, 3.f, 7);
-    const Thickness thickness = localThickness(field, 3, Phase::Solid, 1e9);
-    const Distances inside = distancesWithin(field, 1, 3, Phase::Solid);
+    const Thickness thickness = localThickness(sampleDistances(field, 3, 1), Phase::Solid);
+    const Distances all = distancesToSurface(field, 1, 3);
     for (int x = 0; x < 26; ++x)
         for (int y = 0; y < 24; ++y)
             for (int z = 0; z < 25; ++z) {
                 // The search has balls at voxels only, whose radius is up to 0.87 below the best nearby; and
                 // what a ball all but holds counts as held.
                 float best = 0, most = 0;
-                if (inside.at({x, y, z}) > 0)
+                if (all.at({x, y, z}) < 0)
                     for (int a = 0; a < 26; ++a)
                         for (int b = 0; b < 24; ++b)
                             for (int c = 0; c < 25; ++c) {
-                                const float d = inside.at({a, b, c});
+                                const float d = -all.at({a, b, c});
                                 if (d <= 0) continue;
                                 const float apart = length(Vec3f{float(a - x), float(b - y), float(c - z)});
                                 if (apart <= d) best = std::max(best, 2 * d);
@@ -132,13 +130,12 @@ TEST_CASE("localThickness: the same for any number of threads; shares sum to one
     const BrickField field = test::ballsField({50, 40, 45}, 2, 3.f, 12);
     RunContext one;
     one.threads = 1;
-    CHECK(localThickness(field, 3, Phase::Void, 1e9, one).diameter ==
-          localThickness(field, 3, Phase::Void, 1e9).diameter);
+    CHECK(localThickness(sampleDistances(field, 3, 1, one), Phase::Void, one).diameter ==
+          localThickness(sampleDistances(field, 3, 1), Phase::Void).diameter);
     const ThicknessSummary summary = solidSummary(field);
     CHECK(std::accumulate(summary.share.begin(), summary.share.end(), 0.0) == Approx(1));
     CHECK(solidSummary(BrickField(field.box(), 1.f)).mean == 0);
     RunContext small;
     small.maxMemory = 1000;
-    CHECK(test::thrownBy([&] { localThickness(field, 3, Phase::Solid, 1e9, small); }).code ==
-          int(ErrorCode::Memory));
+    CHECK(test::thrownBy([&] { sampleDistances(field, 3, 1, small); }).code == int(ErrorCode::Memory));
 }

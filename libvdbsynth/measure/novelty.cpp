@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <tuple>
 
@@ -93,6 +94,33 @@ IndexBox middleBox(const IndexBox& box, std::size_t patches) {
     return middle;
 }
 
+// Where a neighbour's source goes on here as a copy too, that is the source: a repeating texture has many
+// equal places, and a run ends only where it must.
+void followNeighbours(const PatchScale& of, const PatchScale& in, PatchMatches& matches) {
+    std::map<Index3, std::size_t> numbers;
+    for (std::size_t i = 0; i < matches.from.size(); ++i) numbers[matches.from[i]] = i;
+    const IndexBox places{in.field->box().min,
+                          in.field->box().max - Index3{kPatchSide - 1, kPatchSide - 1, kPatchSide - 1}};
+    const auto follow = [&](std::size_t i, int direction) {
+        for (int axis = 0; axis < 3; ++axis) {
+            Index3 step{0, 0, 0};
+            step[axis] = direction * kStride;
+            const auto neighbour = numbers.find(matches.from[i] - step);
+            if (neighbour == numbers.end() || matches.costs[neighbour->second] >= kCopyCost) continue;
+            const Index3 place = matches.to[neighbour->second] + step;
+            if (place == matches.to[i]) return;
+            if (!places.contains(place)) continue;
+            const double cost = patchCost(*of.field, matches.from[i], *in.field, place);
+            if (cost >= kCopyCost) continue;
+            matches.to[i] = place;
+            matches.costs[i] = cost;
+            return;
+        }
+    };
+    for (const auto& [place, i] : numbers) follow(i, 1);
+    for (auto it = numbers.rbegin(); it != numbers.rend(); ++it) follow(it->second, -1);
+}
+
 }  // namespace
 
 Novelty measureNovelty(std::vector<SourcedVoxel> voxels, std::size_t looked, std::size_t ofExemplar,
@@ -178,8 +206,8 @@ MatchedSources sourcesByMatching(std::shared_ptr<const BrickField> result, const
     };
     queries.places.erase(std::remove_if(queries.places.begin(), queries.places.end(), outside),
                          queries.places.end());
-    const PatchMatches matches =
-        matchPatches(queries, in.scales.front(), queries.places.size(), kNearCost, ctx);
+    PatchMatches matches = matchPatches(queries, in.scales.front(), queries.places.size(), kNearCost, ctx);
+    followNeighbours(queries, in.scales.front(), matches);
     const int margin = (kPatchSide - kStride) / 2;
     for (std::size_t i = 0; i < matches.from.size(); ++i)
         for (int n = 0; n < kStride * kStride * kStride; ++n) {

@@ -342,4 +342,11 @@ PatchMatches matchPatches(const PatchScale& from, const PatchScale& to, std::siz
     return result;
 }
 
+double patchCost(const BrickField& a, const Index3& cornerA, const BrickField& b, const Index3& cornerB) {
+    Patch ofA, ofB;
+    readPatch(a, cornerA, ofA);
+    readPatch(b, cornerB, ofB);
+    return costOf(ofA, ofB);
+}
+
 }  // namespace vdbsynth

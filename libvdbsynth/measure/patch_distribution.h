@@ -67,6 +67,9 @@ struct PatchMatches {
 PatchMatches matchPatches(const PatchScale& from, const PatchScale& to, std::size_t count, double limit,
                           const RunContext& ctx = {});
 
+/// Mean squared difference of two patches by their corners.
+double patchCost(const BrickField& a, const Index3& cornerA, const BrickField& b, const Index3& cornerB);
+
 /// Local-patch similarity of occupancies [wu2022, section 5]: patches of 11^3 voxels, every fifth voxel, of
 /// boxes padded by 5 void voxels, whose middle 3^3 has both kinds; of up to 1000 of `other` by lot the share
 /// whose best match among all of `reference` is over 0.95.

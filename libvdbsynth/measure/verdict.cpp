@@ -41,13 +41,18 @@ std::vector<IndexBox> subVolumes(const IndexBox& box, const std::array<bool, 3>&
     return boxes;
 }
 
-Verdict judge(const std::vector<Statistic>& parts, const Statistic& result) {
+Statistic meanOf(const std::vector<Statistic>& parts) {
     Statistic mean = parts.front();
     for (std::size_t i = 0; i < mean.values.size(); ++i) {
         double sum = 0;
         for (const Statistic& part : parts) sum += part.values[i];
         mean.values[i] = sum / double(parts.size());
     }
+    return mean;
+}
+
+Verdict judge(const std::vector<Statistic>& parts, const Statistic& result) {
+    const Statistic mean = meanOf(parts);
     std::vector<double> distances;
     for (const Statistic& part : parts) distances.push_back(statisticDistance(part, mean));
     Verdict verdict;

@@ -25,6 +25,9 @@ struct Verdict {
     bool passes() const { return distance <= 2 * sigma && distance <= quartile; }
 };
 
+/// The mean of one statistic over several boxes, value by value. @param parts  one at least
+Statistic meanOf(const std::vector<Statistic>& parts);
+
 /// @param parts   the same statistic of each sub-volume, two at least
 Verdict judge(const std::vector<Statistic>& parts, const Statistic& result);
 

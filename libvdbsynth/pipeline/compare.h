@@ -17,7 +17,7 @@ namespace vdbsynth {
 
 struct CompareOptions {
     /// Axes along which the reference is the same everywhere in the mean; empty: those whose both faces cut
-    /// the solid, where a domain is recorded, else none.
+    /// about as much of the solid (half to twice), where a domain is recorded, else none.
     std::optional<std::array<bool, 3>> stationary;
     /// The process that the reference is a sample of: gives the yardstick. Its size is the reference's.
     std::optional<ExemplarOptions> process;

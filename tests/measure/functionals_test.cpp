@@ -99,18 +99,7 @@ TEST_CASE("eulerCharacteristic: a lattice of bars has -2 a node, whatever the wi
 
 TEST_CASE("surfaceFunctionals: a box has its area and 3 pi a, a notch turns the other way",
           "[measure][oracle]") {
-    Mesh box;
-    for (int i = 0; i < 8; ++i)
-        box.points.push_back({i & 4 ? 12.f : 2.f, i & 2 ? 12.f : 2.f, i & 1 ? 12.f : 2.f});
-    const auto face = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
-        box.quads.push_back({a, b, c, d});
-    };
-    face(0, 1, 3, 2);
-    face(4, 6, 7, 5);
-    face(0, 4, 5, 1);
-    face(2, 3, 7, 6);
-    face(0, 2, 6, 4);
-    face(1, 5, 7, 3);
+    Mesh box = test::boxMesh({2, 2, 2}, {12, 12, 12});
     REQUIRE(summarize(box).closedManifold());
     REQUIRE(summarize(box).signedVolume > 0);
     const SurfaceElements elements = surfaceElements(box);

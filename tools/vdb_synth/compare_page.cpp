@@ -127,7 +127,7 @@ std::string chart(const std::string& title, const std::vector<NamedCurve>& curve
     return "<figure><svg viewBox=\"0 0 400 210\" data-curves=\"" + escaped("[" + json + "]") +
            "\"><g font-size=\"11\" fill=\"#55606a\"><text x=\"2\" y=\"24\">" + shortNumber(high) +
            "</text><text x=\"2\" y=\"194\">" + shortNumber(low) + "</text><text x=\"40\" y=\"206\">0</text>" +
-           "<text x=\"360\" y=\"206\">" + std::to_string(n - 1) +
+           "<text x=\"390\" y=\"206\" text-anchor=\"end\">" + std::to_string(n - 1) +
            " voxels</text></g><path d=\"M40 20V190H390\" fill=\"none\" stroke=\"#b8c0c7\"/>" + lines +
            "</svg><figcaption>" + escaped(title) + "<output></output></figcaption></figure>\n";
 }

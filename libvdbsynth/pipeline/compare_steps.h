@@ -1,0 +1,51 @@
+#pragma once
+#include "libvdbsynth/pipeline/compare.h"
+
+#include <string>
+#include <vector>
+
+namespace vdbsynth {
+
+// The steps of compareModels, for its own files.
+
+inline constexpr int kCapMargin = 2;  ///< [voxels] at a domain's face where caps bend the field
+
+/// A model with all that is measured more than once.
+struct PreparedModel {
+    MeasuredModel model;
+    Index3 corner;  ///< the voxel of the grid that is the field's voxel 0
+    PatchSource patches;
+    std::vector<Projections> projections;  ///< by scale
+};
+
+/// @param coarsening  see prepare (measure/statistics.h)
+PreparedModel prepareModel(const std::string& name, const LevelSet& levelSet, int coarsening,
+                           const RunContext& ctx);
+
+/// Thickness is measured on samples of one size for all models, so that it can be compared.
+int thicknessCoarsening(const CompareInput& reference, const std::vector<CompareInput>& others);
+
+/// Axes at whose both ends the domain's face cuts about as much of the solid: a slab or a terrain is cut
+/// below and not, or hardly, above.
+std::array<bool, 3> cutAxes(const MeasuredModel& model);
+
+/// The spread of the reference's own sub-volumes.
+struct Spread {
+    Index3 part;                                     ///< size of a sub-volume
+    std::vector<std::vector<Statistic>> statistics;  ///< [statistic][part]
+    std::vector<std::vector<double>> wasserstein;    ///< [scale][part] from the other parts; empty: none
+};
+Spread spreadOf(const PreparedModel& reference, const std::vector<IndexBox>& parts, int reach,
+                const RunContext& ctx);
+
+/// A model beside that spread. Its statistics are means over boxes of the size of a sub-volume, so that what
+/// depends on a box's size (a long chord fits into few) is alike; over all of its length where it is shorter.
+std::vector<Verdict> verdictsOn(const Spread& spread, const PreparedModel& other,
+                                const ModelDistances& distances, int reach, const RunContext& ctx);
+
+/// @param others  the models of comparison.others
+std::vector<Yardstick> yardsticksOf(const CompareInput& reference, const PreparedModel& to,
+                                    const Comparison& comparison, const std::vector<PreparedModel>& others,
+                                    const CompareOptions& options, const RunContext& ctx);
+
+}  // namespace vdbsynth

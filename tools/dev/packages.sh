@@ -6,7 +6,7 @@ build=(g++ cmake ninja-build ccache libopenvdb-dev libboost-iostreams-dev libtbb
        libtiff-dev libtinygltf-dev libxxhash-dev zlib1g-dev)
 test=(catch2 python3 procps)
 # Rivals to compare with, programs that must read what we write, fuzzers, linters.
-all=(libopenvdb-tools python3-openvdb python3-numpy blender clang clang-format libclang-rt-14-dev)
+all=(libopenvdb-tools python3-openvdb python3-numpy python3-scipy python3-skimage chromium blender clang clang-format libclang-rt-14-dev)
 
 case "${1:-build}" in
   build) wanted=("${build[@]}") ;;

@@ -25,8 +25,8 @@ struct Feet {
     }
 };
 
-// From a sample next to the surface down its distance's gradient.
-Vec3f footOf(const BrickField& field, float scale, const Index3& q) {
+// From a voxel next to the surface down its distance's gradient.
+Vec3f footOf(const BrickField& field, const Index3& q) {
     Vec3f gradient;
     for (int axis = 0; axis < 3; ++axis) {
         Index3 low = q, high = q;
@@ -35,23 +35,44 @@ Vec3f footOf(const BrickField& field, float scale, const Index3& q) {
         gradient[axis] = field.at(high) - field.at(low);
     }
     const Vec3f place{float(q.x), float(q.y), float(q.z)};
-    return place - normalized(gradient) * (field.inside(q) * scale);
+    return place - normalized(gradient) * field.inside(q);
 }
 
-// Every sample within one of the surface gets its own foot.
-void findFeet(const BrickField& field, float scale, Feet& feet, const RunContext& ctx) {
+// The foot nearest to a sample among those of its own voxels. @return false if there is none
+bool ownFoot(const BrickField& field, const Index3& sample, int step, Vec3f& best) {
+    const Index3 low = sample * step;
+    IndexBox voxels{low, low + Index3{step - 1, step - 1, step - 1}};
+    voxels = voxels.intersection(field.box());
+    float constant = 0, nearest = std::numeric_limits<float>::max();
+    if (step >= 4 && field.constantIn(voxels, constant) && std::abs(constant) >= 1) return false;
+    const Vec3f middle{float(sample.x), float(sample.y), float(sample.z)};
+    for (int x = voxels.min.x; x <= voxels.max.x; ++x)
+        for (int y = voxels.min.y; y <= voxels.max.y; ++y)
+            for (int z = voxels.min.z; z <= voxels.max.z; ++z) {
+                if (std::abs(field.inside({x, y, z})) >= 1) continue;
+                Vec3f foot = footOf(field, {x, y, z});
+                for (int axis = 0; axis < 3; ++axis) foot[axis] = (foot[axis] + 0.5f) / float(step) - 0.5f;
+                const Vec3f apart = foot - middle;
+                if (dot(apart, apart) >= nearest) continue;
+                nearest = dot(apart, apart);
+                best = foot;
+            }
+    return nearest < std::numeric_limits<float>::max();
+}
+
+void findFeet(const BrickField& field, int step, Feet& feet, const RunContext& ctx) {
     const Index3 size = feet.size;
     std::vector<std::vector<Vec3f>> planes{static_cast<std::size_t>(size.x)};
     parallelFor(ctx, planes.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t x = begin; x < end; ++x)
             for (int y = 0; y < size.y; ++y)
                 for (int z = 0; z < size.z; ++z) {
-                    const Index3 p{int(x), y, z};
-                    std::int32_t& own = feet.nearest[feet.index(p.x, y, z)];
+                    Vec3f foot;
+                    std::int32_t& own = feet.nearest[feet.index(int(x), y, z)];
                     own = kNone;
-                    if (std::abs(field.inside(p) * scale) >= 1) continue;
+                    if (!ownFoot(field, {int(x), y, z}, step, foot)) continue;
                     own = std::int32_t(planes[x].size());
-                    planes[x].push_back(footOf(field, scale, p));
+                    planes[x].push_back(foot);
                 }
     });
     std::vector<std::int32_t> before(planes.size(), 0);
@@ -64,6 +85,16 @@ void findFeet(const BrickField& field, float scale, Feet& feet, const RunContext
         for (std::size_t i = begin * plane; i < end * plane; ++i)
             if (feet.nearest[i] != kNone) feet.nearest[i] += before[i / plane];
     });
+}
+
+// The field's value at a sample: of its only voxel, or the mean of those around the middle of an even number.
+float valueAt(const BrickField& field, const Index3& sample, int step) {
+    if (step == 1) return field.inside(sample);
+    const Index3 low = sample * step + Index3{(step - 1) / 2, (step - 1) / 2, (step - 1) / 2};
+    if (step % 2 == 1) return field.at(low);
+    float sum = 0;
+    for (int n = 0; n < 8; ++n) sum += field.at(low + Index3{n >> 2, n >> 1 & 1, n & 1});
+    return sum / 8;
 }
 
 // The lower envelope of parabolas height + (p - centre)^2 over a line, as which is the lowest at each p.
@@ -163,26 +194,30 @@ void nearestAlong(int axis, Feet& feet, const RunContext& ctx) {
 
 }  // namespace
 
-Distances distancesToSurface(const BrickField& field, float scale, float band, const RunContext& ctx) {
-    const Index3 size = field.box().size();
+Distances distancesToSurface(const BrickField& field, float band, int coarsening, const RunContext& ctx) {
+    const Index3 voxels = field.box().size();
+    const auto samplesOf = [&](int n) { return (n + coarsening - 1) / coarsening; };
+    const Index3 size{samplesOf(voxels.x), samplesOf(voxels.y), samplesOf(voxels.z)};
     const std::size_t samples = std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
     requireMemory(ctx, double(samples) * 8, "measuring distances", "compare smaller boxes or larger voxels");
     Feet feet{size};
     feet.nearest.resize(samples);
-    findFeet(field, scale, feet, ctx);
+    findFeet(field, coarsening, feet, ctx);
     for (int axis : {2, 1, 0}) nearestAlong(axis, feet, ctx);
+    // A mean over voxels of which some lie beyond the band is no distance.
+    const float known = coarsening == 1 ? band : band - 0.9f;
     Distances result{size, std::vector<float>(samples)};
     const float none = float(std::max({size.x, size.y, size.z}));
     parallelFor(ctx, std::size_t(size.x), 1, [&](std::size_t begin, std::size_t end) {
         for (int x = int(begin); x < int(end); ++x)
             for (int y = 0; y < size.y; ++y)
                 for (int z = 0; z < size.z; ++z) {
-                    const float own = field.inside({x, y, z}) * scale;
+                    const float own = valueAt(field, {x, y, z}, coarsening);
                     const std::size_t i = feet.index(x, y, z);
                     const std::int32_t foot = feet.nearest[i];
                     const Vec3f p{float(x), float(y), float(z)};
                     const float far = foot == kNone ? none : length(feet.places[std::size_t(foot)] - p);
-                    result.values[i] = std::abs(own) < band ? own : own < 0 ? -far : far;
+                    result.values[i] = std::abs(own) < known ? own / float(coarsening) : own < 0 ? -far : far;
                 }
     });
     return result;

@@ -77,9 +77,10 @@ void addThickness(const Thickness& thickness, const IndexBox& box, int reach, co
 void prepare(MeasuredModel& model, int coarsening, const RunContext& ctx) {
     model.elements = surfaceElements(model.surface, ctx);
     model.solid = Occupancy::fromField(*model.field, ctx);
-    const SampledDistances distances = sampleDistances(*model.field, model.band, coarsening, ctx);
-    model.thickness = localThickness(distances, Phase::Solid, ctx);
-    if (model.beyond == Beyond::Unknown) model.pores = localThickness(distances, Phase::Void, ctx);
+    const Distances distances = distancesToSurface(*model.field, model.band, coarsening, ctx);
+    model.thickness = localThickness(distances, coarsening, Phase::Solid, ctx);
+    if (model.beyond == Beyond::Unknown)
+        model.pores = localThickness(distances, coarsening, Phase::Void, ctx);
 }
 
 std::vector<Statistic> measureStatistics(const MeasuredModel& model, const IndexBox& box, int reach,

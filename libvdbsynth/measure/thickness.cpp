@@ -3,7 +3,6 @@
 #include "libvdbsynth/measure/thickness.h"
 
 #include "libvdbsynth/base/parallel.h"
-#include "libvdbsynth/grid/pyramid.h"
 #include "libvdbsynth/measure/distance_transform.h"
 
 #include <algorithm>
@@ -251,22 +250,9 @@ void drawAll(Lattice& lattice, const RunContext& ctx) {
 
 }  // namespace
 
-SampledDistances sampleDistances(const BrickField& field, float band, int coarsening, const RunContext& ctx) {
-    const BrickField* samples = &field;
-    BrickField coarse;
-    int step = 1;
-    for (; step < coarsening; step *= 2) {
-        coarse = halved(*samples, ctx);
-        samples = &coarse;
-    }
-    // A mean over voxels of which some lie beyond the band is no distance.
-    const float known = step == 1 ? band : std::max(0.f, band / float(step) - 0.9f);
-    return {distancesToSurface(*samples, 1.f / float(step), known, ctx), step};
-}
-
-Thickness localThickness(const SampledDistances& sampled, Phase phase, const RunContext& ctx) {
-    const PhaseDistances distances{sampled.distances, phase == Phase::Solid ? -1.f : 1.f};
-    const int step = sampled.coarsening;
+Thickness localThickness(const Distances& sampled, int coarsening, Phase phase, const RunContext& ctx) {
+    const PhaseDistances distances{sampled, phase == Phase::Solid ? -1.f : 1.f};
+    const int step = coarsening;
     std::map<int, Lattice> lattices = ballsOf(distances, ctx);
     for (auto& [factor, lattice] : lattices) {
         std::stable_sort(lattice.balls.begin(), lattice.balls.end(),
@@ -274,9 +260,9 @@ Thickness localThickness(const SampledDistances& sampled, Phase phase, const Run
         drawAll(lattice, ctx);
     }
     Thickness result;
-    result.size = sampled.distances.size;
+    result.size = sampled.size;
     result.coarsening = step;
-    result.diameter.assign(sampled.distances.values.size(), 0);
+    result.diameter.assign(sampled.values.size(), 0);
     const Index3& size = result.size;
     parallelFor(ctx, std::size_t(size.x), 4, [&](std::size_t begin, std::size_t end) {
         for (int x = int(begin); x < int(end); ++x)
@@ -292,7 +278,7 @@ Thickness localThickness(const SampledDistances& sampled, Phase phase, const Run
                                                  std::size_t(z / factor);
                         diameter = std::max(diameter, lattice.diameter[cell]);
                     }
-                    result.diameter[sampled.distances.index({x, y, z})] = diameter * float(step);
+                    result.diameter[sampled.index({x, y, z})] = diameter * float(step);
                 }
     });
     return result;

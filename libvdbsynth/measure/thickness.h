@@ -8,22 +8,11 @@ namespace vdbsynth {
 /// Which side of the surface is meant.
 enum class Phase { Solid, Void };
 
-/// Distances on a field's voxels, or on coarser samples of it.
-struct SampledDistances {
-    Distances distances;
-    int coarsening = 1;  ///< side of a sample in the voxels of the field: 1, 2, 4 ...
-};
-/// @param field  [voxels], box beginning at 0, right where |value| < `band`
-/// @param coarsening  side of a sample [voxels]: 1, 2, 4 ...
-/// @throw Error Memory, Cancelled   @par Repeats same bits for any number of threads
-SampledDistances sampleDistances(const BrickField& field, float band, int coarsening,
-                                 const RunContext& ctx = {});
-
 /// Local thickness at every sample of a phase: the diameter of the largest ball that lies in the phase and
 /// holds the sample [hildebrand1997]. Of the void it is known as the pore size.
 struct Thickness {
     Index3 size;
-    int coarsening = 1;           ///< as of the distances
+    int coarsening = 1;           ///< side of a sample in the voxels of the field
     std::vector<float> diameter;  ///< [size, x slowest] in the voxels of the field; 0 in the other phase
 };
 
@@ -31,8 +20,9 @@ struct Thickness {
 /// their radius least; of those close together in relation to their radius the largest is drawn. Balls of a
 /// radius over 16 samples are drawn on a lattice coarser by a power of two, at least 8 of its samples a
 /// radius. Balls may reach out of the box: what lies there is not known.
+/// @param coarsening  that of the distances
 /// @par Cost    memory 8 bytes a sample   @par Repeats same bits for any number of threads
-Thickness localThickness(const SampledDistances& sampled, Phase phase, const RunContext& ctx = {});
+Thickness localThickness(const Distances& distances, int coarsening, Phase phase, const RunContext& ctx = {});
 
 /// Mean, deviation and distribution of the thickness over the phase's voxels in a box.
 struct ThicknessSummary {

@@ -38,26 +38,30 @@ Vec3f footOf(const BrickField& field, const Index3& q) {
     return place - normalized(gradient) * field.inside(q);
 }
 
-// The foot nearest to a sample among those of its own voxels. @return false if there is none
-bool ownFoot(const BrickField& field, const Index3& sample, int step, Vec3f& best) {
+// The foot of the voxel nearest to a sample's middle of those of its own that are within one of the surface.
+// @return false if none is
+bool ownFoot(const BrickField& field, const Index3& sample, int step, Vec3f& foot) {
     const Index3 low = sample * step;
     IndexBox voxels{low, low + Index3{step - 1, step - 1, step - 1}};
     voxels = voxels.intersection(field.box());
-    float constant = 0, nearest = std::numeric_limits<float>::max();
+    float constant = 0;
     if (step >= 4 && field.constantIn(voxels, constant) && std::abs(constant) >= 1) return false;
-    const Vec3f middle{float(sample.x), float(sample.y), float(sample.z)};
+    Index3 best = low;
+    int nearest = std::numeric_limits<int>::max();
     for (int x = voxels.min.x; x <= voxels.max.x; ++x)
         for (int y = voxels.min.y; y <= voxels.max.y; ++y)
             for (int z = voxels.min.z; z <= voxels.max.z; ++z) {
                 if (std::abs(field.inside({x, y, z})) >= 1) continue;
-                Vec3f foot = footOf(field, {x, y, z});
-                for (int axis = 0; axis < 3; ++axis) foot[axis] = (foot[axis] + 0.5f) / float(step) - 0.5f;
-                const Vec3f apart = foot - middle;
-                if (dot(apart, apart) >= nearest) continue;
-                nearest = dot(apart, apart);
-                best = foot;
+                const Index3 twice = (Index3{x, y, z} - low) * 2 - Index3{step - 1, step - 1, step - 1};
+                const int apart = twice.x * twice.x + twice.y * twice.y + twice.z * twice.z;
+                if (apart >= nearest) continue;
+                nearest = apart;
+                best = {x, y, z};
             }
-    return nearest < std::numeric_limits<float>::max();
+    if (nearest == std::numeric_limits<int>::max()) return false;
+    foot = footOf(field, best);
+    for (int axis = 0; axis < 3; ++axis) foot[axis] = (foot[axis] + 0.5f) / float(step) - 0.5f;
+    return true;
 }
 
 void findFeet(const BrickField& field, int step, Feet& feet, const RunContext& ctx) {

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 packages that are missing. Usage: packages.sh build|test|all
+# Installs the Debian 12 packages that are missing. Usage: packages.sh build|test|bench|all
 set -euo pipefail
 build=(g++ cmake ninja-build ccache libopenvdb-dev libboost-iostreams-dev libtbb-dev libboost-program-options-dev libtinyobjloader-dev
        nlohmann-json3-dev libeigen3-dev libnanoflann-dev libjpeg62-turbo-dev libopenexr-dev libpng-dev libpugixml-dev
@@ -8,11 +8,15 @@ test=(catch2 python3 procps)
 # Rivals to compare with, programs that must read what we write, fuzzers, linters.
 all=(libopenvdb-tools python3-openvdb python3-numpy python3-scipy python3-skimage chromium blender clang clang-format libclang-rt-14-dev)
 
+# Rivals of the benchmarks.
+bench=(libbenchmark-dev libfftw3-dev libopenvdb-tools python3)
+
 case "${1:-build}" in
   build) wanted=("${build[@]}") ;;
   test) wanted=("${build[@]}" "${test[@]}") ;;
+  bench) wanted=("${build[@]}" "${bench[@]}") ;;
   all) wanted=("${build[@]}" "${test[@]}" "${all[@]}") ;;
-  *) echo "usage: $0 build|test|all" >&2; exit 2 ;;
+  *) echo "usage: $0 build|test|bench|all" >&2; exit 2 ;;
 esac
 
 missing=()

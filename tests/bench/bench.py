@@ -1,0 +1,177 @@
+#!/usr/bin/python3
+"""Runs every benchmark: those of the command line here, those in the process by Google Benchmark. Prints a table of budget,
+measured, rival and ratio, and the growth of time and memory with active voxels; writes both to bench.json.
+Usage: bench.py BUILD_FOLDER [--quick] [ROW...]"""
+import json
+import os
+import pathlib
+import platform
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+SAMPLES = os.environ.get("VDBSYNTH_SAMPLES", str(SOURCE.parent / "shared" / "data"))
+
+
+def measured(words, folder, timeout=900):
+    """Seconds and peak bytes of a command; None if it fails or takes longer."""
+    began = time.monotonic()
+    process = subprocess.Popen([str(w) for w in words], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    timer = None
+    try:
+
+        timer = threading.Timer(timeout, process.terminate)
+        timer.start()
+        error = process.stderr.read()
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+    finally:
+        timer.cancel()
+    if process.returncode != 0:
+        print(f"  {' '.join(map(str, words))}: {error.decode(errors='replace').strip()[-200:]}", file=sys.stderr)
+        return None
+    return time.monotonic() - began, usage.ru_maxrss * 1024
+
+
+class Bench:
+    def __init__(self, build, quick, words):
+        self.program = str(pathlib.Path(build).resolve() / "tools/vdb_synth/vdb_synth")
+        self.match = str(pathlib.Path(build).resolve() / "tests/bench/block_match_bench")
+        self.quick, self.words = quick, words
+        self.folder = tempfile.mkdtemp(prefix="vdbsynth_bench_")
+        self.rows, self.growth = [], []
+
+    def wanted(self, name):
+        return not self.words or any(word in name for word in self.words)
+
+    def tool(self, *words, timeout=900):
+        """Seconds of the work, peak bytes, and the report."""
+        result = measured([self.program, *words, "-q", "--report", "report.json"], self.folder, timeout)
+        if result is None:
+            return None
+        with open(os.path.join(self.folder, "report.json"), encoding="utf-8") as file:
+            report = json.load(file)
+        return result[0], report["peak_bytes"], report
+
+    def row(self, name, budget, ours, rival, ratio, note=""):
+        self.rows.append({"name": name, "budget": budget, "measured": ours, "rival": rival, "ratio": ratio, "note": note})
+        print(f"{name:34} {budget:26} {ours:26} {rival:22} {ratio:8} {note}", flush=True)
+
+    def grow(self, work, voxels, seconds, peak):
+        self.growth.append({"work": work, "active_voxels": voxels, "seconds": seconds, "peak_bytes": peak})
+        print(f"{work:34} {voxels:>12} active voxels {seconds:8.2f} s {peak / 1e6:8.0f} MB", flush=True)
+
+    def block_match(self):
+        environment = {**os.environ, "VDBSYNTH_BENCH_QUERIES": "20" if self.quick else "200"}
+        for kind in ("balls_0.4", "balls_0.75", "balls_1", "balls_1.5", "sponge", "terrain"):
+            for size in ("64/8", "128/16", "256/32"):
+                name = f"match {kind} {size}"
+                if not self.wanted(name) or (self.quick and size == "256/32"):
+                    continue
+                result = subprocess.run([self.match, f"--benchmark_filter=^(ours|fftw)/{kind}/{size}/", "--benchmark_format=json"],
+                                        env=environment, capture_output=True, text=True, check=True)
+                found = {b["name"].split("/")[0]: b for b in json.loads(result.stdout)["benchmarks"]}
+                ours, rival = found["ours"], found["fftw"]
+                each = lambda b: b["real_time"] / b["queries"]
+                radius = kind.startswith("balls_") and float(kind[6:]) >= 0.75
+                budget = "3x" if radius and size == "128/16" else "5x" if radius and size == "256/32" else "at most 4x slower"
+                self.row(name, f"{budget} of FFTW", f"{each(ours):.2f} ms a query", f"{each(rival):.2f} ms",
+                         f"{each(rival) / each(ours):.2f}x",
+                         f"index {ours['build_seconds']:.1f} s, {ours['index_MB']:.0f} MB; dearer: {ours['dearer_than_rival']:.0f}")
+
+    def synthesis(self):
+        for kind in ("balls", "grid", "foam", "sponge"):
+            name = f"synth {kind} 64^3 to 128^3"
+            if not self.wanted(name):
+                continue
+            self.tool("make", kind, "exemplar.vdb", "--resolution", 64)
+            result = self.tool("synth", "exemplar.vdb", "-o", "more.vdb", "--size", "2x,2x,2x", "--block", 16, "--levels", 3)
+            if result:
+                self.row(name, "3 s, 1 GB", f"{result[0]:.1f} s, {result[1] / 1e9:.2f} GB", "1 to 12 h (2004)", "",
+                         "the paper's time, on its machine")
+        name = "synth grid 64^3 to 512^3"
+        if self.wanted(name) and not self.quick:
+            self.tool("make", "grid", "exemplar.vdb", "--resolution", 64)
+            result = self.tool("synth", "exemplar.vdb", "-o", "more.vdb", "--size", "8x,8x,8x", timeout=900)
+            self.row(name, "180 s, 4 GB", f"{result[0]:.0f} s, {result[1] / 1e9:.2f} GB" if result else "over 900 s or no memory", "none", "")
+
+    def compare(self):
+        for kind in ("balls", "sponge", "terrain"):
+            name = f"compare {kind} 256^3"
+            if not self.wanted(name):
+                continue
+            for seed in (1, 2):
+                self.tool("make", kind, f"{seed}.vdb", "--resolution", 256, "--seed", seed)
+            result = self.tool("compare", "1.vdb", "2.vdb")
+            if result:
+                self.row(name, "20 s", f"{result[0]:.1f} s, {result[1] / 1e9:.2f} GB", "none", "", "both models, verdict included")
+
+    def meshes(self):
+        rival = shutil.which("vdb_tool")
+        for file, resolution in (("bunny.off", 200), ("bunny.off", 500), ("dragon_vrip_res2.ply.gz", 300), ("fandisk.obj", 300)):
+            name = f"convert {file} {resolution}"
+            path = os.path.join(SAMPLES, "meshes", file)
+            if not self.wanted(name) or not os.path.exists(path):
+                continue
+            self.tool("convert", path, "-o", "at.vdb", "--resolution", resolution)
+            with open(os.path.join(self.folder, "report.json"), encoding="utf-8") as report:
+                voxels = json.load(report)["counts"]["active_voxels"]
+            info = json.loads(subprocess.run([self.program, "info", "at.vdb", "--json"], cwd=self.folder, capture_output=True, text=True,
+                                             check=True).stdout)
+            voxel = info["model"]["voxel_size"]
+            # Both read the same .ply, as vertices and triangles.
+            self.tool("convert", path, "-o", "high.vdb", "--resolution", 400)
+            self.tool("convert", "high.vdb", "-o", "mesh.ply")
+            ours = statistics.median(measured([self.program, "convert", "mesh.ply", "-o", "ours.vdb", "--voxel-size", voxel, "-q"],
+                                              self.folder)[0] for _ in range(5))
+            if rival:
+                theirs = statistics.median(measured([rival, "-read", "mesh.ply", "-mesh2ls", f"voxel={voxel}", "width=3", "-write", "t.vdb"],
+                                                    self.folder)[0] for _ in range(5))
+                self.row(name, "1.1x of vdb_tool's time", f"{ours:.2f} s", f"{theirs:.2f} s", f"{ours / theirs:.2f}x", f"{voxels} active voxels")
+
+    def growth_curves(self):
+        if self.wanted("growth convert"):
+            for resolution in (64, 128, 256, 512, 1024):
+                result = self.tool("convert", os.path.join(SAMPLES, "meshes", "bunny.off"), "-o", "g.vdb", "--resolution", resolution)
+                if result:
+                    self.grow("growth convert bunny", result[2]["counts"]["active_voxels"], result[0], result[1])
+        if self.wanted("growth synth"):
+            self.tool("make", "grid", "exemplar.vdb", "--resolution", 64)
+            for size in ("1x,1x,1x", "2x,2x,1x", "4x,4x,1x", "4x,4x,4x") if not self.quick else ("1x,1x,1x", "2x,2x,1x"):
+                result = self.tool("synth", "exemplar.vdb", "-o", "g.vdb", "--size", size)
+                if result:
+                    self.grow(f"growth synth grid {size}", result[2]["counts"]["active_voxels"], result[0], result[1])
+        if self.wanted("growth compare"):
+            for resolution in (64, 128, 256):
+                made = self.tool("make", "sponge", "1.vdb", "--resolution", resolution)
+                self.tool("make", "sponge", "2.vdb", "--resolution", resolution, "--seed", 2)
+                result = self.tool("compare", "1.vdb", "2.vdb")
+                if result:
+                    self.grow(f"growth compare sponge {resolution}", made[2]["counts"]["active_voxels"], result[0], result[1])
+
+    def run(self):
+        with open("/proc/cpuinfo", encoding="utf-8") as file:
+            models = [l.split(":")[1].strip() for l in file if l.startswith("model name")]
+        machine = f"{models[0] if models else platform.processor()}, {os.cpu_count()} cores"
+        print(machine)
+        print(f"{'row':34} {'budget':26} {'measured':26} {'rival':22} {'ratio':8} note")
+        for part in (self.meshes, self.synthesis, self.compare, self.block_match, self.growth_curves):
+            part()
+        shutil.rmtree(self.folder, ignore_errors=True)
+        return {"machine": machine, "rows": self.rows, "growth": self.growth}
+
+
+def main(words):
+    build, quick = words[0], "--quick" in words
+    result = Bench(build, quick, [w for w in words[1:] if not w.startswith("--")]).run()
+    with open(os.path.join(build, "bench.json"), "w", encoding="utf-8") as file:
+        json.dump(result, file, indent=1)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,273 @@
+// Exact best blocks beside the rival: all squared differences at once by FFT (FFTW, single precision, all
+// threads), the plan and what does not depend on the query made beforehand. Both answer the same queries, cut
+// from another seed's sample, half with one octant masked; what they find is compared.
+#include <benchmark/benchmark.h>
+#include <fftw3.h>
+
+#include "libvdbsynth/base/random.h"
+#include "libvdbsynth/pipeline/make.h"
+#include "libvdbsynth/search/block_cost.h"
+#include "libvdbsynth/search/block_index.h"
+#include "libvdbsynth/vdb/redistance.h"
+
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <complex>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <thread>
+
+namespace vdbsynth {
+namespace {
+
+struct Row {
+    std::string name, kind;
+    double featureInBlocks;  // 0: the kind's own
+};
+const std::vector<Row> kRows{{"balls_0.4", "balls", 0.8}, {"balls_0.75", "balls", 1.5},
+                             {"balls_1", "balls", 2},     {"balls_1.5", "balls", 3},
+                             {"sponge", "sponge", 0},     {"terrain", "terrain", 0}};
+
+struct Query {
+    std::vector<float> samples;
+    std::vector<std::uint8_t> known;  // empty: everywhere
+};
+
+// What a row works on: exemplar, queries, our index, the rival's transforms.
+struct Setting {
+    std::shared_ptr<const BrickField> exemplar;
+    std::vector<Query> queries;
+    int block = 16;
+};
+
+BrickField sampleOf(const Row& row, int side, int block, std::uint64_t seed) {
+    openvdb::initialize();
+    MakeOptions options;
+    options.exemplar.kind = row.kind;
+    options.exemplar.size = {side, side, side};
+    options.exemplar.feature = row.featureInBlocks * block;
+    RunContext ctx;
+    ctx.seed = seed;
+    const LevelSet model = makeModel(options, ctx);
+    return widenBand(*model.grid, model.domain, kAllCut, std::max(8.f, float(block) / 2));
+}
+
+std::vector<Query> cutQueries(const BrickField& other, int block, int count) {
+    std::vector<Query> queries;
+    const Index3 size = other.box().size();
+    for (std::uint64_t i = 0; queries.size() < std::size_t(count) && i < 100000; ++i) {
+        Random random(7, i);
+        const Index3 corner{int(random.below(std::uint32_t(size.x - block + 1))),
+                            int(random.below(std::uint32_t(size.y - block + 1))),
+                            int(random.below(std::uint32_t(size.z - block + 1)))};
+        Query query;
+        query.samples.resize(std::size_t(block) * block * block);
+        other.readBox(corner, {block, block, block}, query.samples.data());
+        const auto [low, high] = std::minmax_element(query.samples.begin(), query.samples.end());
+        if (*low >= 0 || *high <= 0) continue;  // synthesis asks for blocks with a surface
+        if (queries.size() % 2 == 1) {
+            query.known.assign(query.samples.size(), 1);
+            const int half = block / 2;
+            for (int x = half; x < block; ++x)
+                for (int y = half; y < block; ++y)
+                    for (int z = half; z < block; ++z)
+                        query.known[std::size_t((x * block + y) * block + z)] = 0;
+        }
+        queries.push_back(std::move(query));
+    }
+    return queries;
+}
+
+Setting& settingFor(const Row& row, int side, int block) {
+    static std::map<std::string, Setting> made;
+    const std::string key = row.name + "/" + std::to_string(side);
+    if (made.count(key)) return made[key];
+    made.clear();  // one at a time: they are large
+    Setting& setting = made[key];
+    setting.block = block;
+    setting.exemplar = std::make_shared<const BrickField>(sampleOf(row, side, block, 1));
+    const char* count = std::getenv("VDBSYNTH_BENCH_QUERIES");
+    setting.queries = cutQueries(sampleOf(row, side, block, 2), block, count ? std::atoi(count) : 200);
+    return setting;
+}
+
+// Exhaustive squared differences by correlation: sum of E^2 m, less twice that of E q m, plus that of q^2 m.
+class Exhaustive {
+public:
+    Exhaustive(const BrickField& exemplar, int block) : mSize(exemplar.box().size()), mBlock(block) {
+        fftwf_init_threads();
+        fftwf_plan_with_nthreads(int(std::thread::hardware_concurrency()));
+        mReal = fftwf_alloc_real(std::size_t(mSize.x) * std::size_t(mSize.y) * std::size_t(mSize.z));
+        mSpectrum = fftwf_alloc_complex(spectrumSize());
+        mForward = fftwf_plan_dft_r2c_3d(mSize.x, mSize.y, mSize.z, mReal, mSpectrum, FFTW_MEASURE);
+        mBackward = fftwf_plan_dft_c2r_3d(mSize.x, mSize.y, mSize.z, mSpectrum, mReal, FFTW_MEASURE);
+        mSamples.resize(std::size_t(exemplar.box().volume()));
+        exemplar.readBox({0, 0, 0}, mSize, mSamples.data());
+        std::copy(mSamples.begin(), mSamples.end(), mReal);
+        mExemplar = transformed();
+    }
+    ~Exhaustive() {
+        fftwf_destroy_plan(mForward);
+        fftwf_destroy_plan(mBackward);
+        fftwf_free(mReal);
+        fftwf_free(mSpectrum);
+    }
+
+    // The energies under a mask do not depend on the query: made once for every mask that occurs.
+    void prepare(const std::vector<std::uint8_t>& known) {
+        if (mEnergies.count(known)) return;
+        std::vector<float> squares(mSamples.size());
+        for (std::size_t i = 0; i < squares.size(); ++i) squares[i] = mSamples[i] * mSamples[i];
+        std::copy(squares.begin(), squares.end(), mReal);
+        const std::vector<std::complex<float>> energy = transformed();
+        placeBlock([&](std::size_t i) { return known.empty() ? 1.f : float(known[i]); });
+        fftwf_execute(mForward);
+        multiply(energy);
+        fftwf_execute(mBackward);
+        std::vector<float> sums(mReal, mReal + mSamples.size());
+        mEnergies[known] = std::move(sums);
+    }
+
+    BlockMatch match(const Query& query) {
+        placeBlock(
+            [&](std::size_t i) { return query.known.empty() || query.known[i] ? query.samples[i] : 0.f; });
+        fftwf_execute(mForward);
+        multiply(mExemplar);
+        fftwf_execute(mBackward);
+        const std::vector<float>& energy = mEnergies.at(query.known);
+        const float scale = 1.f / float(mSamples.size());
+        float best = 1e30f;
+        std::size_t at = 0;
+        for (int x = 0; x <= mSize.x - mBlock; ++x)
+            for (int y = 0; y <= mSize.y - mBlock; ++y) {
+                const std::size_t row =
+                    (std::size_t(x) * std::size_t(mSize.y) + std::size_t(y)) * std::size_t(mSize.z);
+                for (std::size_t i = row; i <= row + std::size_t(mSize.z - mBlock); ++i) {
+                    const float cost = (energy[i] - 2 * mReal[i]) * scale;
+                    if (cost < best) {
+                        best = cost;
+                        at = i;
+                    }
+                }
+            }
+        const int z = int(at % std::size_t(mSize.z)), rest = int(at / std::size_t(mSize.z));
+        return {{rest / mSize.y, rest % mSize.y, z}, 0};
+    }
+
+private:
+    std::size_t spectrumSize() const {
+        return std::size_t(mSize.x) * std::size_t(mSize.y) * std::size_t(mSize.z / 2 + 1);
+    }
+    std::vector<std::complex<float>> transformed() {
+        fftwf_execute(mForward);
+        const auto* begin = reinterpret_cast<const std::complex<float>*>(mSpectrum);
+        return {begin, begin + spectrumSize()};
+    }
+    template <typename Value>
+    void placeBlock(const Value& value) {
+        std::fill(mReal, mReal + mSamples.size(), 0.f);
+        std::size_t i = 0;
+        for (int x = 0; x < mBlock; ++x)
+            for (int y = 0; y < mBlock; ++y)
+                for (int z = 0; z < mBlock; ++z, ++i)
+                    mReal[(std::size_t(x) * std::size_t(mSize.y) + std::size_t(y)) * std::size_t(mSize.z) +
+                          std::size_t(z)] = value(i);
+    }
+    void multiply(const std::vector<std::complex<float>>& by) {
+        auto* spectrum = reinterpret_cast<std::complex<float>*>(mSpectrum);
+        for (std::size_t i = 0; i < by.size(); ++i) {
+            const float a = spectrum[i].real(), b = -spectrum[i].imag(), c = by[i].real(), d = by[i].imag();
+            spectrum[i] = {a * c - b * d, a * d + b * c};
+        }
+    }
+
+    Index3 mSize;
+    int mBlock;
+    float* mReal;
+    fftwf_complex* mSpectrum;
+    fftwf_plan mForward, mBackward;
+    std::vector<float> mSamples;
+    std::vector<std::complex<float>> mExemplar;
+    std::map<std::vector<std::uint8_t>, std::vector<float>> mEnergies;
+};
+
+double seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// One iteration answers all queries, in parallel where that is how it would be used.
+void benchOurs(benchmark::State& state, const Row& row, int side, int block) {
+    Setting& setting = settingFor(row, side, block);
+    BlockIndexOptions options;
+    options.block = block;
+    const double began = seconds();
+    const BlockIndex index = BlockIndex::build(setting.exemplar, options);
+    state.counters["build_seconds"] = seconds() - began;
+    state.counters["index_MB"] = double(index.memoryBytes()) / 1e6;
+    state.counters["queries"] = double(setting.queries.size());
+    std::vector<BlockMatch> matches(setting.queries.size());
+    for (auto _ : state) {
+        const std::size_t threads = std::thread::hardware_concurrency();
+        std::vector<std::thread> workers;
+        std::atomic<std::size_t> next{0};
+        for (std::size_t t = 0; t < threads; ++t)
+            workers.emplace_back([&] {
+                for (std::size_t i; (i = next++) < setting.queries.size();) {
+                    BlockQuery query;
+                    query.samples = setting.queries[i].samples.data();
+                    query.known =
+                        setting.queries[i].known.empty() ? nullptr : setting.queries[i].known.data();
+                    matches[i] = index.match(query).front();
+                }
+            });
+        for (std::thread& worker : workers) worker.join();
+    }
+    // Both costs by the one function: ours may not be dearer than what the rival finds.
+    Exhaustive rival(*setting.exemplar, block);
+    int worse = 0;
+    for (std::size_t i = 0; i < std::min<std::size_t>(20, matches.size()); ++i) {
+        const Query& query = setting.queries[i];
+        rival.prepare(query.known);
+        const std::uint8_t* known = query.known.empty() ? nullptr : query.known.data();
+        const double theirs = blockCost(*setting.exemplar, rival.match(query).position, block,
+                                        query.samples.data(), known, countKnown(known, block), 1e30);
+        worse += matches[i].cost > theirs;
+    }
+    state.counters["dearer_than_rival"] = worse;
+}
+
+void benchRival(benchmark::State& state, const Row& row, int side, int block) {
+    Setting& setting = settingFor(row, side, block);
+    Exhaustive rival(*setting.exemplar, block);
+    for (const Query& query : setting.queries) rival.prepare(query.known);
+    state.counters["queries"] = double(setting.queries.size());
+    for (auto _ : state)
+        for (const Query& query : setting.queries) benchmark::DoNotOptimize(rival.match(query));
+}
+
+}  // namespace
+}  // namespace vdbsynth
+
+int main(int argc, char** argv) {
+    using namespace vdbsynth;
+    for (const Row& row : kRows)
+        for (const auto& [side, block] : {std::pair{64, 8}, std::pair{128, 16}, std::pair{256, 32}}) {
+            const std::string name = row.name + "/" + std::to_string(side) + "/" + std::to_string(block);
+            const auto once = [&](const std::string& who, auto* bench) {
+                benchmark::RegisterBenchmark((who + "/" + name).c_str(), bench, row, side, block)
+                    ->Unit(benchmark::kMillisecond)
+                    ->Iterations(1)
+                    ->UseRealTime();
+            };
+            once("fftw", benchRival);
+            once("ours", benchOurs);
+        }
+    benchmark::Initialize(&argc, argv);
+    benchmark::RunSpecifiedBenchmarks();
+    return 0;
+}

@@ -1,6 +1,7 @@
 // Makes a closed mesh manifold by pairing the faces around each crowded edge and giving every fan of
 // paired faces a vertex of its own (the "cutting" of non-manifold surfaces).
 #include "libvdbsynth/geometry/mesh.h"
+#include "libvdbsynth/math/disjoint_sets.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,24 +54,6 @@ std::vector<Side> sidesOf(const Faces& faces) {
     return sides;
 }
 
-class Sets {
-public:
-    explicit Sets(std::size_t count) : mParent(count) { std::iota(mParent.begin(), mParent.end(), 0u); }
-    std::uint32_t find(std::uint32_t i) {
-        while (mParent[i] != i) i = mParent[i] = mParent[mParent[i]];
-        return i;
-    }
-    // The smaller number becomes the root, so results do not depend on the order of calls.
-    void join(std::uint32_t a, std::uint32_t b) {
-        a = find(a);
-        b = find(b);
-        if (a != b) mParent[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<std::uint32_t> mParent;
-};
-
 // Angle of a face around its edge, seen along the edge from low to high, in [0, 2 pi).
 double angleAround(const Mesh& mesh, const Faces& faces, const Side& side) {
     const Vec3d low = cast<double>(mesh.points[side.low]);
@@ -86,7 +69,7 @@ double angleAround(const Mesh& mesh, const Faces& faces, const Side& side) {
     return angle < 0 ? angle + 6.283185307179586 : angle;
 }
 
-void joinAcross(Sets& sets, const Faces& faces, const Side& a, const Side& b) {
+void joinAcross(DisjointSets& sets, const Faces& faces, const Side& a, const Side& b) {
     for (std::uint32_t ca : {a.from, a.to})
         for (std::uint32_t cb : {b.from, b.to})
             if (faces.vertex[ca] == faces.vertex[cb]) sets.join(ca, cb);
@@ -94,7 +77,7 @@ void joinAcross(Sets& sets, const Faces& faces, const Side& a, const Side& b) {
 
 // With outward normals a face that runs forward (low to high) has the solid on its clockwise side
 // about the edge, so it pairs with the next backward face going down in angle.
-void pairAround(Sets& sets, const Mesh& mesh, const Faces& faces, const std::vector<Side>& sides,
+void pairAround(DisjointSets& sets, const Mesh& mesh, const Faces& faces, const std::vector<Side>& sides,
                 std::size_t begin, std::size_t end) {
     std::vector<std::pair<double, std::size_t>> ring;
     for (std::size_t i = begin; i < end; ++i) ring.emplace_back(angleAround(mesh, faces, sides[i]), i);
@@ -128,7 +111,7 @@ void markCoincident(const std::vector<Vec3f>& points, std::vector<char>& marks) 
 std::size_t separateNonManifold(Mesh& mesh, float gap) {
     const Faces faces = cornersOf(mesh);
     const std::vector<Side> sides = sidesOf(faces);
-    Sets sets(faces.vertex.size());
+    DisjointSets sets(faces.vertex.size());
     for (std::size_t i = 0; i < sides.size();) {
         std::size_t j = i;
         while (j < sides.size() && sides[j].low == sides[i].low && sides[j].high == sides[i].high) ++j;
@@ -144,7 +127,7 @@ std::size_t separateNonManifold(Mesh& mesh, float gap) {
     const std::size_t before = mesh.points.size();
     std::vector<char> split(before, 0);
     for (std::uint32_t c = 0; c < faces.vertex.size(); ++c) {
-        const std::uint32_t root = sets.find(c), v = faces.vertex[c];
+        const std::uint32_t root = sets.root(c), v = faces.vertex[c];
         if (root == c && owner[v] == kNone) {
             owner[v] = c;
             newVertex[c] = v;
@@ -170,7 +153,7 @@ std::size_t separateNonManifold(Mesh& mesh, float gap) {
         centre = centre * (1.0 / (end - begin));
         const Vec3d normal = cross(corner(begin + 1) - corner(begin), corner(end - 1) - corner(begin));
         for (std::uint32_t c = begin; c < end; ++c) {
-            const std::uint32_t v = newVertex[sets.find(c)];
+            const std::uint32_t v = newVertex[sets.root(c)];
             if (split[v])
                 towards[v] = towards[v] + (centre - corner(c)) -
                              normalized(normal) * (0.5 * length(centre - corner(c)));
@@ -180,9 +163,9 @@ std::size_t separateNonManifold(Mesh& mesh, float gap) {
         mesh.points[v] = mesh.points[v] + cast<float>(normalized(towards[v]) * double(gap));
     std::uint32_t corner = 0;
     for (Triangle& t : mesh.triangles)
-        for (std::uint32_t& v : t) v = newVertex[sets.find(corner++)];
+        for (std::uint32_t& v : t) v = newVertex[sets.root(corner++)];
     for (Quad& q : mesh.quads)
-        for (std::uint32_t& v : q) v = newVertex[sets.find(corner++)];
+        for (std::uint32_t& v : q) v = newVertex[sets.root(corner++)];
     return added;
 }
 

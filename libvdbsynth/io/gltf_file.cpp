@@ -4,6 +4,7 @@
 #include "libvdbsynth/io/mesh_readers.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/whole_file.h"
+#include "libvdbsynth/math/affine.h"
 
 #include <tiny_gltf.h>
 
@@ -17,64 +18,24 @@
 namespace vdbsynth {
 namespace {
 
-using Matrix = std::array<double, 16>;  // column by column, as glTF has it
-
 constexpr std::size_t kMostNodes = 1000000;
 
 [[noreturn]] void refuse(const std::string& path, const std::string& what) {
     throw Error(ErrorCode::BadData, path + ": " + what);
 }
 
-Matrix multiplied(const Matrix& a, const Matrix& b) {
-    Matrix result{};
-    for (std::size_t c = 0; c < 4; ++c)
-        for (std::size_t r = 0; r < 4; ++r)
-            for (std::size_t k = 0; k < 4; ++k) result[c * 4 + r] += a[k * 4 + r] * b[c * 4 + k];
-    return result;
-}
-
-Matrix matrixOf(const tinygltf::Node& node) {
-    Matrix m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+Affine matrixOf(const tinygltf::Node& node) {
+    Affine m = kIdentity;
     if (node.matrix.size() == 16) {
         std::copy(node.matrix.begin(), node.matrix.end(), m.begin());
         return m;
     }
-    if (node.rotation.size() == 4) {
-        const double x = node.rotation[0], y = node.rotation[1], z = node.rotation[2], w = node.rotation[3];
-        m = {1 - 2 * (y * y + z * z),
-             2 * (x * y + z * w),
-             2 * (x * z - y * w),
-             0,
-             2 * (x * y - z * w),
-             1 - 2 * (x * x + z * z),
-             2 * (y * z + x * w),
-             0,
-             2 * (x * z + y * w),
-             2 * (y * z - x * w),
-             1 - 2 * (x * x + y * y),
-             0,
-             0,
-             0,
-             0,
-             1};
-    }
+    if (node.rotation.size() == 4)
+        m = rotation(node.rotation[0], node.rotation[1], node.rotation[2], node.rotation[3]);
     for (std::size_t c = 0; node.scale.size() == 3 && c < 3; ++c)
         for (std::size_t r = 0; r < 3; ++r) m[c * 4 + r] *= node.scale[c];
     for (std::size_t r = 0; node.translation.size() == 3 && r < 3; ++r) m[12 + r] = node.translation[r];
     return m;
-}
-
-double determinant(const Matrix& m) {
-    return m[0] * (m[5] * m[10] - m[9] * m[6]) - m[4] * (m[1] * m[10] - m[9] * m[2]) +
-           m[8] * (m[1] * m[6] - m[5] * m[2]);
-}
-
-Vec3f transformed(const Matrix& m, const float* p) {
-    Vec3f result;
-    for (int r = 0; r < 3; ++r)
-        result[r] = float(m[std::size_t(r)] * double(p[0]) + m[std::size_t(4 + r)] * double(p[1]) +
-                          m[std::size_t(8 + r)] * double(p[2]) + m[std::size_t(12 + r)]);
-    return result;
 }
 
 // What normalised whole numbers are divided by, 0 for real ones.
@@ -130,11 +91,10 @@ public:
         }
         struct Visit {
             int node;
-            Matrix matrix;
+            Affine matrix;
         };
         std::vector<Visit> open;
-        for (auto root = roots.rbegin(); root != roots.rend(); ++root)
-            open.push_back({*root, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}});
+        for (auto root = roots.rbegin(); root != roots.rend(); ++root) open.push_back({*root, kIdentity});
         std::set<int> seen;
         while (!open.empty()) {
             const Visit visit = open.back();
@@ -144,7 +104,7 @@ public:
             if (!seen.insert(visit.node).second || seen.size() > kMostNodes)
                 refuse(mPath, "its nodes are no tree");
             const tinygltf::Node& node = mModel.nodes[std::size_t(visit.node)];
-            const Matrix matrix = multiplied(visit.matrix, matrixOf(node));
+            const Affine matrix = multiplied(visit.matrix, matrixOf(node));
             if (node.mesh >= 0) readMesh(node.mesh, matrix);
             for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
                 open.push_back({*child, matrix});
@@ -234,7 +194,7 @@ private:
         }
     }
 
-    void readMesh(int index, const Matrix& matrix) {
+    void readMesh(int index, const Affine& matrix) {
         const bool mirrored = determinant(matrix) < 0;
         for (const tinygltf::Primitive& primitive : at(mModel.meshes, index, "a mesh").primitives) {
             const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
@@ -250,7 +210,8 @@ private:
             if (first + count > 0xfffffffeu) refuse(mPath, "has over four billion vertices");
             for (std::size_t i = 0; i < count; ++i) {
                 const float p[3] = {float(places[3 * i]), float(places[3 * i + 1]), float(places[3 * i + 2])};
-                mMesh.points.push_back(transformed(matrix, p));
+                mMesh.points.push_back(
+                    cast<float>(transformed(matrix, {double(p[0]), double(p[1]), double(p[2])})));
                 const Vec3f& made = mMesh.points.back();
                 if (!std::isfinite(made.x) || !std::isfinite(made.y) || !std::isfinite(made.z))
                     refuse(mPath, "vertex " + std::to_string(first + i) +

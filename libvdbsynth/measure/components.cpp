@@ -2,6 +2,8 @@
 // before.
 #include "libvdbsynth/measure/components.h"
 
+#include "libvdbsynth/math/disjoint_sets.h"
+
 #include <algorithm>
 #include <functional>
 
@@ -31,26 +33,9 @@ void appendRuns(const std::uint64_t* row, std::size_t words, int sizeZ, std::vec
     }
 }
 
-class Forest {
-public:
-    void add(std::uint32_t root) { mParents.push_back(root); }
-    std::uint32_t root(std::uint32_t i) {
-        while (mParents[i] != i) i = mParents[i] = mParents[mParents[i]];
-        return i;
-    }
-    void join(std::uint32_t a, std::uint32_t b) {
-        a = root(a);
-        b = root(b);
-        mParents[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<std::uint32_t> mParents;
-};
-
 // Joins the runs [a, aEnd) with the runs [b, bEnd) of a neighbouring row that they touch.
 void joinRows(const std::vector<Run>& runs, std::size_t a, std::size_t aEnd, std::size_t b, std::size_t bEnd,
-              int reach, Forest& forest) {
+              int reach, DisjointSets& forest) {
     while (a < aEnd && b < bEnd) {
         if (runs[a].begin < runs[b].end + reach && runs[b].begin < runs[a].end + reach)
             forest.join(std::uint32_t(a), std::uint32_t(b));
@@ -68,7 +53,7 @@ Components findComponents(const Occupancy& solid, Neighbours neighbours) {
     const std::size_t rows = std::size_t(size.x) * std::size_t(size.y);
     std::vector<Run> runs;
     std::vector<std::size_t> first(rows + 1, 0);
-    Forest forest;
+    DisjointSets forest;
     const bool all = neighbours == Neighbours::All;
     for (int x = 0; x < size.x; ++x)
         for (int y = 0; y < size.y; ++y) {
@@ -76,7 +61,7 @@ Components findComponents(const Occupancy& solid, Neighbours neighbours) {
             first[row] = runs.size();
             appendRuns(solid.row(x, y), solid.rowWords(), size.z, runs);
             first[row + 1] = runs.size();
-            for (std::size_t run = first[row]; run < runs.size(); ++run) forest.add(std::uint32_t(run));
+            for (std::size_t run = first[row]; run < runs.size(); ++run) forest.add();
             for (int dx = -1; dx <= 0; ++dx)
                 for (int dy = -1; dy <= (dx == 0 ? -1 : 1); ++dy) {
                     if ((!all && dx != 0 && dy != 0) || x + dx < 0 || y + dy < 0 || y + dy >= size.y)

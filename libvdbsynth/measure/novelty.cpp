@@ -1,6 +1,7 @@
 #include "libvdbsynth/measure/novelty.h"
 
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/math/disjoint_sets.h"
 #include "libvdbsynth/measure/patch_distribution.h"
 
 #include <algorithm>
@@ -34,34 +35,15 @@ Vec3f gradientAt(const BrickField& field, const Index3& p) {
     return gradient;
 }
 
-class Runs {
-public:
-    explicit Runs(std::size_t count) : mParents(count) {
-        std::iota(mParents.begin(), mParents.end(), std::size_t(0));
-    }
-    std::size_t root(std::size_t i) {
-        while (mParents[i] != i) i = mParents[i] = mParents[mParents[i]];
-        return i;
-    }
-    void join(std::size_t a, std::size_t b) {
-        a = root(a);
-        b = root(b);
-        mParents[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<std::size_t> mParents;
-};
-
 struct Jumps {
     double sum = 0;
     std::size_t count = 0;
     double mean() const { return count ? sum / double(count) : 0; }
 };
 
-void summarizeRuns(Runs& runs, std::size_t count, std::size_t looked, Novelty& novelty) {
+void summarizeRuns(DisjointSets& runs, std::size_t count, std::size_t looked, Novelty& novelty) {
     std::vector<std::size_t> sizes(count, 0);
-    for (std::size_t i = 0; i < count; ++i) ++sizes[runs.root(i)];
+    for (std::size_t i = 0; i < count; ++i) ++sizes[runs.root(std::uint32_t(i))];
     double inRuns = 0, number = 0;
     for (std::size_t size : sizes) {
         if (size < 2) continue;
@@ -129,7 +111,7 @@ Novelty measureNovelty(std::vector<SourcedVoxel> voxels, std::size_t looked, std
     novelty.voxels = voxels.size();
     if (voxels.empty()) return novelty;
     std::sort(voxels.begin(), voxels.end(), earlier);
-    Runs runs(voxels.size());
+    DisjointSets runs(voxels.size());
     std::vector<Vec3f> gradients(voxels.size());
     for (std::size_t i = 0; i < voxels.size(); ++i) gradients[i] = gradientAt(result, voxels[i].place);
     Jumps seams, inner;
@@ -150,7 +132,7 @@ Novelty measureNovelty(std::vector<SourcedVoxel> voxels, std::size_t looked, std
             Jumps& jumps = together ? inner : seams;
             jumps.sum += double(length(gradients[i] - gradients[next]));
             ++jumps.count;
-            if (together) runs.join(i, next);
+            if (together) runs.join(std::uint32_t(i), std::uint32_t(next));
         }
     }
     summarizeRuns(runs, voxels.size(), looked, novelty);

@@ -23,17 +23,24 @@ inline std::uint64_t shiftedWord(const std::uint64_t* row, std::size_t words, st
     return bits == 0 || at + 1 >= words ? low : low | row[at + 1] << (64 - bits);
 }
 
-__attribute__((target_clones("popcnt", "default"))) std::uint64_t countShifted(const std::uint64_t* a,
-                                                                               const std::uint64_t* b,
-                                                                               std::size_t words, int shift) {
+// Pairs of voxels p in a and p + shift in b, rows [x0, x1) x [y0, y1) of a, shift.z at least 0. Short rows
+// are many, so all of them are in one function.
+__attribute__((target_clones("popcnt", "default"))) std::uint64_t countShifted(const Occupancy& a,
+                                                                               const Occupancy& b,
+                                                                               const Index3& shift, int x0,
+                                                                               int x1, int y0, int y1) {
+    const std::size_t words = a.rowWords(), skip = std::size_t(shift.z >> 6);
+    const int bits = shift.z & 63;
     std::uint64_t sum = 0;
-    for (std::size_t i = 0; i < words; ++i)
-        if (a[i] != 0) {
-            const std::size_t at = i + std::size_t(shift >> 6);
-            const int bits = shift & 63;
-            std::uint64_t other = at < words ? b[at] >> bits : 0;
-            if (bits != 0 && at + 1 < words) other |= b[at + 1] << (64 - bits);
-            sum += std::uint64_t(__builtin_popcountll(a[i] & other));
+    for (int x = x0; x < x1; ++x)
+        for (int y = y0; y < y1; ++y) {
+            const std::uint64_t *mine = a.row(x, y), *other = b.row(x + shift.x, y + shift.y) + skip;
+            for (std::size_t i = 0; i + skip < words; ++i) {
+                if (mine[i] == 0) continue;
+                std::uint64_t shifted = other[i] >> bits;
+                if (bits != 0 && i + skip + 1 < words) shifted |= other[i + 1] << (64 - bits);
+                sum += std::uint64_t(__builtin_popcountll(mine[i] & shifted));
+            }
         }
     return sum;
 }
@@ -105,11 +112,8 @@ std::uint64_t countPairs(const Occupancy& a, const Occupancy& b, const Index3& s
     // The pairs of (a, b, shift) are those of (b, a, -shift).
     if (shift.z < 0) return countPairs(b, a, {-shift.x, -shift.y, -shift.z});
     const Index3& size = a.size();
-    std::uint64_t sum = 0;
-    for (int x = std::max(0, -shift.x); x < std::min(size.x, size.x - shift.x); ++x)
-        for (int y = std::max(0, -shift.y); y < std::min(size.y, size.y - shift.y); ++y)
-            sum += countShifted(a.row(x, y), b.row(x + shift.x, y + shift.y), a.rowWords(), shift.z);
-    return sum;
+    return countShifted(a, b, shift, std::max(0, -shift.x), std::min(size.x, size.x - shift.x),
+                        std::max(0, -shift.y), std::min(size.y, size.y - shift.y));
 }
 
 }  // namespace vdbsynth

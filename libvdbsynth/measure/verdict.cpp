@@ -29,8 +29,8 @@ std::vector<IndexBox> subVolumes(const IndexBox& box, const std::array<bool, 3>&
         if (stationary[std::size_t(axis)]) {
             count[axis] = parts;
             side[axis] /= parts;
+            if (side[axis] < shortest) return {};
         }
-    if (std::min({side.x, side.y, side.z}) < shortest) return {};
     std::vector<IndexBox> boxes;
     for (int x = 0; x < count.x; ++x)
         for (int y = 0; y < count.y; ++y)

@@ -10,7 +10,7 @@ namespace vdbsynth {
 /// Boxes of equal size that an exemplar is cut into: two along each of three stationary axes, three along
 /// each of two, eight along one. The others keep their length.
 /// @param stationary  x, y, z
-/// @return empty if a box would be under `shortest` voxels long
+/// @return empty if a box would be under `shortest` voxels long along a stationary axis
 std::vector<IndexBox> subVolumes(const IndexBox& box, const std::array<bool, 3>& stationary, int shortest);
 
 /// One statistic of a result beside the spread of the exemplar's own sub-volumes.

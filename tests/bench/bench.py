@@ -166,11 +166,24 @@ class Bench:
         return {"machine": machine, "rows": self.rows, "growth": self.growth}
 
 
+def markdown(result):
+    """The tables of docs/performance.md."""
+    lines = [f"Machine: {result['machine']}.", "", "| row | budget | measured | rival | ratio | note |", "|---|---|---|---|---|---|"]
+    lines += ["| " + " | ".join(str(row[k]) for k in ("name", "budget", "measured", "rival", "ratio", "note")) + " |" for row in result["rows"]]
+    lines += ["", "| work | active voxels | seconds | peak memory (MB) | ns a voxel | bytes a voxel |", "|---|---|---|---|---|---|"]
+    for g in result["growth"]:
+        lines.append(f"| {g['work']} | {g['active_voxels']} | {g['seconds']:.2f} | {g['peak_bytes'] / 1e6:.0f} | "
+                     f"{g['seconds'] / g['active_voxels'] * 1e9:.0f} | {g['peak_bytes'] / g['active_voxels']:.0f} |")
+    return "\n".join(lines) + "\n"
+
+
 def main(words):
     build, quick = words[0], "--quick" in words
     result = Bench(build, quick, [w for w in words[1:] if not w.startswith("--")]).run()
     with open(os.path.join(build, "bench.json"), "w", encoding="utf-8") as file:
         json.dump(result, file, indent=1)
+    with open(os.path.join(build, "bench.md"), "w", encoding="utf-8") as file:
+        file.write(markdown(result))
 
 
 if __name__ == "__main__":

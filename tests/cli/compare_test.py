@@ -52,7 +52,7 @@ class Compare(CliTest):
     def setUp(self):
         super().setUp()
         for name, kind, seed in (("a", "balls", 1), ("b", "balls", 2), ("s", "sponge", 1)):
-            self.ok("make", kind, f"{name}.vdb", "--size", "40,40,40", "--seed", seed, "--voxel-size", "0.5")
+            self.ok("make", kind, f"{name}.vdb", "--resolution", 40, "--seed", seed, "--voxel-size", "0.5")
 
     def comparison(self, *words):
         return json.loads(self.ok("compare", *words, "--json").stdout)

@@ -50,6 +50,8 @@ TEST_CASE("subVolumes: eight halves, nine columns, eight slices; none if too sma
     const std::vector<IndexBox> columns = subVolumes(box, {true, true, false}, 16);
     REQUIRE(columns.size() == 9);
     CHECK(columns[0].size() == Index3{21, 21, 66});
+    // How thin a slab is across does not matter.
+    CHECK(subVolumes({{0, 0, 0}, {95, 95, 8}}, {true, true, false}, 16).size() == 9);
     CHECK(subVolumes(box, {true, false, false}, 8).size() == 8);
     CHECK(subVolumes(box, {true, false, false}, 9).empty());
     CHECK(subVolumes(box, {false, false, false}, 1).empty());

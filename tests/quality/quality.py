@@ -22,9 +22,9 @@ MADE = {kind: (["make", kind, "exemplar.vdb", "--resolution", 64, "--seed", 1], 
         for kind in ("balls", "grid", "chainmail", "fibres", "foam", "sponge", "terrain", "weave")}
 REAL = {
     "dem": (["convert", "terrain/dem.tif", "-o", "exemplar.vdb", "--height", 4000, "--resolution", 96], "2x,2x,1x", None),
-    "brick": (["convert", "textures/brick.png", "-o", "exemplar.vdb", "--height", 6, "--resolution", 96], "2x,2x,1x", None),
-    "gravel": (["convert", "textures/gravel.png", "-o", "exemplar.vdb", "--height", 10, "--resolution", 96], "2x,2x,1x", None),
-    "metal": (["convert", "textures/metal.pgm", "-o", "exemplar.vdb", "--height", 10, "--resolution", 96], "2x,2x,1x", None),
+    "brick": (["convert", "textures/brick.png", "-o", "exemplar.vdb", "--height", 60, "--resolution", 96], "2x,2x,1x", None),
+    "gravel": (["convert", "textures/gravel.png", "-o", "exemplar.vdb", "--height", 80, "--resolution", 96], "2x,2x,1x", None),
+    "metal": (["convert", "textures/metal.pgm", "-o", "exemplar.vdb", "--height", 32, "--resolution", 96], "2x,2x,1x", None),
     "cheese": (["convert", "meshes/cheese.off", "-o", "whole.vdb", "--resolution", 128], "2x,2x,1x", None),
 }
 PICTURE = (320, 240)
@@ -66,7 +66,7 @@ def write_png(path, rows):
 
 
 def contact_sheet(pairs, path):
-    """Pairs of pictures, exemplar beside result, four pairs a row."""
+    """Pairs of pictures, exemplar beside result, two pairs a row."""
     blank, rows = [bytearray(b"\xff" * 3 * PICTURE[0])] * PICTURE[1], []
     for first in range(0, len(pairs), 2):
         pictures = [read_png(p) for pair in pairs[first:first + 2] for p in pair]

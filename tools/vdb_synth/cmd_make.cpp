@@ -38,7 +38,7 @@ void make(Run& run) {
     requireOutputPaths(paths);
     for (const std::string& path : paths) run.outputs().reserve(path);
     run.reserveOutputs();
-    const double halfWidth = run.modelOptions().halfWidth;
+    const double halfWidth = run.arguments.real("half-width", 3, 1.5, 100);
     const LevelSet model = withHalfWidth(makeModel(options, run.context), halfWidth, run.context);
     ModelOutputOptions outputs;
     outputs.metadata = run.metadata();

@@ -155,6 +155,7 @@ double verifiedShare(const std::vector<SourcedVoxel>& voxels, const BrickField& 
 
 std::size_t countNearSurface(const BrickField& field, const IndexBox& box, float reach,
                              const RunContext& ctx) {
+    if (box.empty()) return 0;
     std::vector<std::size_t> counts(std::size_t(box.size().x), 0);
     parallelFor(ctx, counts.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t plane = begin; plane < end; ++plane)

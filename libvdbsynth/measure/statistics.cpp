@@ -14,6 +14,11 @@ Statistic number(const char* name, int power, double value) {
     return {name, power, false, {value}};
 }
 
+// A density; 0 where a box is too thin to hold any of what it is counted in.
+double per(double total, double volume) {
+    return volume > 0 ? total / volume : 0;
+}
+
 void append(std::vector<double>& to, const std::vector<double>& from) {
     to.insert(to.end(), from.begin(), from.end());
 }
@@ -34,8 +39,8 @@ void addSurface(const MeasuredModel& model, const IndexBox& box, std::vector<Sta
     }
     const SurfaceFunctionals surface = surfaceFunctionals(model.elements, inner);
     const double volume = whole ? double(box.volume()) : double(inner.volume());
-    all.push_back(number("surface area per volume", -1, surface.area / volume));
-    all.push_back(number("mean curvature per volume", -2, surface.meanCurvature / volume));
+    all.push_back(number("surface area per volume", -1, per(surface.area, volume)));
+    all.push_back(number("mean curvature per volume", -2, per(surface.meanCurvature, volume)));
 }
 
 // Along x, y and z, of the solid and of the void.
@@ -92,7 +97,7 @@ std::vector<Statistic> measureStatistics(const MeasuredModel& model, const Index
     addSurface(model, box, all);
     const double corners = whole ? double(box.volume()) : eulerVolume(box.size(), Beyond::Unknown);
     const double euler = eulerCharacteristic(whole ? model.solid : solid, model.beyond);
-    all.push_back(number("Euler characteristic per volume", -3, euler / corners));
+    all.push_back(number("Euler characteristic per volume", -3, per(euler, corners)));
     addThickness(model.thickness, box, reach, "local thickness", all);
     if (!model.pores.diameter.empty()) addThickness(model.pores, box, reach, "pore size", all);
     const LinesByAxis lines = measureLines(solid, reach, ctx);
@@ -123,7 +128,7 @@ Topology measureTopology(const MeasuredModel& model, const RunContext& ctx) {
     topology.enclosed = double(topology.empty.interior.size());
     const double euler = eulerCharacteristic(solid, model.beyond);
     topology.eulerCharacteristic =
-        whole ? euler : euler / eulerVolume(solid.size(), model.beyond) * solid.volume();
+        whole ? euler : per(euler, eulerVolume(solid.size(), model.beyond)) * solid.volume();
     if (whole) topology.tunnels = double(topology.solid.sizes.size()) + topology.enclosed - euler;
     return topology;
 }

@@ -284,3 +284,26 @@ TEST_CASE("compareModels: errors, cancel, threads", "[pipeline][error]") {
     }
     CHECK(first.distances[0].novelty.seamRatio == second.distances[0].novelty.seamRatio);
 }
+
+TEST_CASE("compareModels: domains of one, two and eight voxels give numbers", "[pipeline][degenerate]") {
+    const LevelSet balls = made("balls", 48);
+    for (const IndexBox& box : {IndexBox{{10, 10, 10}, {11, 11, 11}}, IndexBox{{10, 10, 10}, {40, 40, 10}},
+                                IndexBox{{10, 10, 10}, {17, 17, 17}}, IndexBox{{10, 10, 10}, {10, 10, 40}}}) {
+        LevelSet part;
+        try {
+            part = cropModel(balls, box);
+        } catch (const Error&) {
+            continue;  // no surface there
+        }
+        INFO(boxText(box));
+        const Comparison c = compared(part, part);
+        for (const Statistic& statistic : c.reference.statistics)
+            for (double value : statistic.values) CHECK(std::isfinite(value));
+        CHECK(std::isfinite(c.reference.topology.eulerCharacteristic));
+        const Comparison other = compared(balls, part);
+        for (const ModelDistances::Scale& scale : other.distances.front().scales) {
+            CHECK(std::isfinite(scale.wasserstein));
+            CHECK(std::isfinite(scale.coherence));
+        }
+    }
+}

@@ -50,7 +50,7 @@ struct MatchedSources {
 };
 
 /// Finds where a result without a map came from: patches of 8^3 on every fourth voxel near its surface are
-/// looked for in the exemplar; one that differs by under a tenth of a voxel (root mean square) counts as a
+/// looked for in the exemplar; one that differs by under a quarter voxel (root mean square) counts as a
 /// copy and gives its source to the 4^3 voxels in its middle that are near the surface. At most about 6000
 /// patches are looked for, in the middle of the box.
 /// @par Repeats same bits for ctx.seed, any number of threads

@@ -29,8 +29,13 @@ void appendSums(std::vector<double>& to, const std::vector<double>& shares) {
     for (double share : shares) to.push_back(sum += share);
 }
 
+// An object is counted whole, and its parts like those of a texture.
+bool isWhole(const MeasuredModel& model, const IndexBox& box) {
+    return model.beyond == Beyond::Void && box == model.counted;
+}
+
 void addSurface(const MeasuredModel& model, const IndexBox& box, std::vector<Statistic>& all) {
-    const bool whole = model.beyond == Beyond::Void;
+    const bool whole = isWhole(model, box);
     // Within a voxel of a domain's face the caps bend the surface; and they lie beyond it.
     IndexBox inner = box;
     for (int axis = 0; axis < 3; ++axis) {
@@ -90,16 +95,17 @@ void prepare(MeasuredModel& model, int coarsening, const RunContext& ctx) {
 
 std::vector<Statistic> measureStatistics(const MeasuredModel& model, const IndexBox& box, int reach,
                                          const RunContext& ctx) {
-    const bool whole = model.beyond == Beyond::Void;
+    const bool whole = isWhole(model, box);
     const Occupancy solid = model.solid.window(box);
     std::vector<Statistic> all;
     all.push_back(number("volume fraction", 0, double(solid.count()) / solid.volume()));
     addSurface(model, box, all);
     const double corners = whole ? double(box.volume()) : eulerVolume(box.size(), Beyond::Unknown);
-    const double euler = eulerCharacteristic(whole ? model.solid : solid, model.beyond);
+    const double euler =
+        eulerCharacteristic(whole ? model.solid : solid, whole ? Beyond::Void : Beyond::Unknown);
     all.push_back(number("Euler characteristic per volume", -3, per(euler, corners)));
     addThickness(model.thickness, box, reach, "local thickness", all);
-    if (!model.pores.diameter.empty()) addThickness(model.pores, box, reach, "pore size", all);
+    addThickness(model.pores, box, reach, "pore size", all);
     const LinesByAxis lines = measureLines(solid, reach, ctx);
     addChords(lines, 0, "", all);
     addChords(lines, 3, " of void", all);

@@ -74,6 +74,7 @@ SurfaceDistance oneWay(const Mesh& from, const Mesh& to, const RunContext& ctx) 
         result.rootMean += own.area[i] * distances[i] * distances[i];
         result.hausdorff = std::max(result.hausdorff, distances[i]);
     }
+    if (area <= 0) return {};
     result.mean /= area;
     result.rootMean = std::sqrt(result.rootMean / area);
     return result;

@@ -93,7 +93,7 @@ bool inOnePlace(const Mesh& mesh, const PreparedModel& to) {
 
 // Where voxels may come from and go to: not where caps bend the field.
 IndexBox sourcedBox(const MeasuredModel& model) {
-    return model.beyond == Beyond::Void ? model.counted : model.counted.expanded(-kCapMargin);
+    return model.beyond == Beyond::Void ? model.field->box() : model.counted.expanded(-kCapMargin);
 }
 
 // The voxels near the surface that a source map names, in the voxels of the two fields.
@@ -152,10 +152,8 @@ ModelDistances distancesOf(const CompareInput& reference, const PreparedModel& t
                                  std::sqrt(matchPatches(b, a, kMatched, far, ctx).mean),
                                  std::sqrt(matchPatches(a, b, kMatched, far, ctx).mean)});
     }
-    const bool whole = from.model.beyond == Beyond::Void;
-    result.localPatches =
-        localPatchSimilarity(to.model.solid.window(to.model.counted),
-                             whole ? from.model.solid : from.model.solid.window(from.model.counted), ctx);
+    result.localPatches = localPatchSimilarity(to.model.solid.window(to.model.counted),
+                                               from.model.solid.window(from.model.counted), ctx);
     stage.advance();
     Stage last(ctx, other.name + ": novelty", 1);
     const Mesh mesh = inReferenceVoxels(reference.model, to, other.model, from);
@@ -195,6 +193,11 @@ Comparison compareModels(const CompareInput& reference, const std::vector<Compar
         throw Error(ErrorCode::Unusable, reference.name +
                                              ": has no recorded domain, so --process cannot "
                                              "tell what size to make; crop it to a box first");
+    const Index3 size = reference.model.domain.size();
+    if (options.process &&
+        (std::min({size.x, size.y, size.z}) < 8 || std::max({size.x, size.y, size.z}) > 4096))
+        throw Error(ErrorCode::Unusable,
+                    reference.name + ": --process makes domains of 8 to 4096 voxels a side only");
     const ThreadLimit limit(ctx);
     Comparison result;
     const int coarsening = thicknessCoarsening(reference, others);

@@ -162,7 +162,8 @@ std::vector<Yardstick> yardsticksOf(const CompareInput& reference, const Prepare
         make.voxelSize = voxelSizeOf(*reference.model.grid);
         RunContext fresh = ctx;
         Random random(ctx.seed, std::uint64_t(i), 0x46524553);
-        fresh.seed = (std::uint64_t(random.bits()) << 32) | random.bits();
+        fresh.seed = std::uint64_t(random.bits()) << 32;
+        fresh.seed |= random.bits();
         measure(makeModel(make, fresh), "fresh exemplar " + std::to_string(i + 1), 1.0 / options.fresh,
                 &Yardstick::fresh);
     }

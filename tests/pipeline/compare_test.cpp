@@ -307,3 +307,15 @@ TEST_CASE("compareModels: domains of one, two and eight voxels give numbers", "[
         }
     }
 }
+
+TEST_CASE("compareModels: an object beside a texture, both ways, with axes given", "[pipeline][degenerate]") {
+    CompareOptions options;
+    options.stationary = std::array<bool, 3>{true, true, true};
+    for (const Comparison& c :
+         {compared(ball(20), made("balls", 40), options), compared(made("balls", 40), ball(20), options)}) {
+        REQUIRE(c.reference.statistics.size() == c.others.front().statistics.size());
+        for (std::size_t i = 0; i < c.reference.statistics.size(); ++i)
+            CHECK(c.reference.statistics[i].name == c.others.front().statistics[i].name);
+    }
+    CHECK(compared(ball(12), ball(12)).distances.front().localPatches.shareIoU == 1);
+}

@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/math/trigonometry.h"
+#include "libvdbsynth/math/vec3.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,28 +13,57 @@ namespace {
 
 constexpr std::size_t kDirections = 48;
 
-// One of each pair of opposite displacements whose length rounds to r, at most kDirections of them.
-std::vector<Index3> shell(int r) {
+bool inShell(const Index3& p, int r) {
+    return std::lround(std::sqrt(double(p.x) * p.x + double(p.y) * p.y + double(p.z) * p.z)) == r;
+}
+
+// Of p and -p the one that stands for both.
+bool upper(const Index3& p) {
+    return p.z > 0 || (p.z == 0 && (p.y > 0 || (p.y == 0 && p.x >= 0)));
+}
+
+// The lattice point of the shell that is nearest to p, a point of length r: simple rounding can leave the
+// shell, by less than a step.
+Index3 nearestInShell(int r, const Vec3d& p) {
+    Index3 nearest;
+    double best = -1;
+    for (int n = 0; n < 27; ++n) {
+        const Index3 q{int(std::lround(p.x)) + n / 9 - 1, int(std::lround(p.y)) + n / 3 % 3 - 1,
+                       int(std::lround(p.z)) + n % 3 - 1};
+        if (!inShell(q, r)) continue;
+        const Vec3d d = p - Vec3d{double(q.x), double(q.y), double(q.z)};
+        if (best < 0 || dot(d, d) < best) {
+            nearest = q;
+            best = dot(d, d);
+        }
+    }
+    return upper(nearest) ? nearest : nearest * -1;
+}
+
+}  // namespace
+
+std::vector<Index3> radialShifts(int r) {
+    // From this radius on there are far more than that.
+    constexpr int kCrowded = 5;
     std::vector<Index3> all;
-    for (int x = -r; x <= r; ++x)
+    for (int x = -r; r < kCrowded && x <= r; ++x)
         for (int y = -r; y <= r; ++y)
             for (int z = 0; z <= r; ++z) {
-                if (z == 0 && (y < 0 || (y == 0 && x < 0))) continue;
-                const double length = std::sqrt(double(x * x + y * y + z * z));
-                if (std::lround(length) == r) all.push_back({x, y, z});
+                if (upper({x, y, z}) && inShell({x, y, z}, r)) all.push_back({x, y, z});
             }
-    if (all.size() <= kDirections) return all;
+    if (r < kCrowded && all.size() <= kDirections) return all;
     // A Fibonacci spiral on the half sphere; each point goes to its lattice point, which may be shared.
     std::set<Index3> chosen;
     const double golden = kPi * (3 - std::sqrt(5.0));
     for (std::size_t i = 0; i < kDirections; ++i) {
         const double z = (double(i) + 0.5) / double(kDirections), flat = std::sqrt(1 - z * z);
         const double turn = golden * double(i);
-        chosen.insert({int(std::lround(r * flat * cosine(turn))), int(std::lround(r * flat * sine(turn))),
-                       int(std::lround(r * z))});
+        chosen.insert(nearestInShell(r, {r * flat * cosine(turn), r * flat * sine(turn), r * z}));
     }
     return {chosen.begin(), chosen.end()};
 }
+
+namespace {
 
 double pairsWithin(const Index3& size, const Index3& shift) {
     double pairs = 1;
@@ -68,7 +98,7 @@ TwoPointCorrelation twoPointCorrelation(const Occupancy& solid, int reach, const
     };
     std::vector<Task> tasks;
     for (int r = 0; r <= reach; ++r) {
-        for (const Index3& shift : shell(r)) tasks.push_back({shift, r, -1});
+        for (const Index3& shift : radialShifts(r)) tasks.push_back({shift, r, -1});
         for (int axis = 0; axis < 3; ++axis) {
             Index3 shift{0, 0, 0};
             shift[axis] = r;

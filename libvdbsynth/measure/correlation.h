@@ -13,9 +13,12 @@ struct TwoPointCorrelation {
     std::array<std::vector<double>, 3> axis;  ///< [reach + 1] along x, y, z
 };
 
+/// One of each pair of opposite displacements whose length rounds to r: all of them where these are at most
+/// 48, else at most 48 spread evenly over the half sphere. @param r  0 and more
+std::vector<Index3> radialShifts(int r);
+
 /// @param reach  longest r [voxels], at least 1; where no pair lies in the box, values are 0
-/// The radial value at r is the mean over displacements whose length rounds to r: all of them where these are
-/// at most 48 up to sign, else 48 spread evenly over the half sphere.
+/// The radial value at r is the mean over radialShifts(r).
 /// @par Cost    O(48 * reach * voxels / 64)   @par Repeats same bits for any number of threads
 TwoPointCorrelation twoPointCorrelation(const Occupancy& solid, int reach, const RunContext& ctx = {});
 

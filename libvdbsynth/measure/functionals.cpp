@@ -92,10 +92,15 @@ struct Side {
     std::uint32_t low, high, face;
 };
 
-// The sides of all faces, those of one edge side by side.
-std::vector<Side> sidesByEdge(const std::vector<Triangle>& faces, std::size_t vertices,
-                              const RunContext& ctx) {
-    std::vector<std::uint32_t> first(vertices + 1, 0);
+// The sides of all faces by their lower vertex.
+struct Sides {
+    std::vector<std::uint32_t> first;  // [vertices + 1]
+    std::vector<Side> all;
+};
+
+Sides sidesByEdge(const std::vector<Triangle>& faces, std::size_t vertices) {
+    Sides sides;
+    sides.first.assign(vertices + 1, 0);
     const auto visit = [&](const auto& use) {
         for (std::size_t f = 0; f < faces.size(); ++f)
             for (std::size_t k = 0; k < 3; ++k) {
@@ -103,18 +108,11 @@ std::vector<Side> sidesByEdge(const std::vector<Triangle>& faces, std::size_t ve
                 use(Side{std::min(from, to), std::max(from, to), std::uint32_t(f)});
             }
     };
-    visit([&](const Side& side) { ++first[side.low + 1]; });
-    for (std::size_t v = 0; v < vertices; ++v) first[v + 1] += first[v];
-    std::vector<Side> sides(faces.size() * 3);
-    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-    visit([&](const Side& side) { sides[next[side.low]++] = side; });
-    parallelFor(ctx, vertices, 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end; ++v)
-            std::sort(sides.begin() + first[v], sides.begin() + first[v + 1],
-                      [](const Side& a, const Side& b) {
-                          return std::tie(a.high, a.face) < std::tie(b.high, b.face);
-                      });
-    });
+    visit([&](const Side& side) { ++sides.first[side.low + 1]; });
+    for (std::size_t v = 0; v < vertices; ++v) sides.first[v + 1] += sides.first[v];
+    sides.all.resize(faces.size() * 3);
+    std::vector<std::uint32_t> next(sides.first.begin(), sides.first.end() - 1);
+    visit([&](const Side& side) { sides.all[next[side.low]++] = side; });
     return sides;
 }
 
@@ -132,6 +130,95 @@ double turn(const Mesh& mesh, const std::vector<Triangle>& faces, const Side& a,
     for (std::uint32_t v : t)
         if (v != a.low && v != a.high) far = v;
     return dot(na, corner(mesh, far) - corner(mesh, a.low)) <= 0 ? angle : -angle;
+}
+
+using Element = SurfaceElements::Element;
+using ByCell = SurfaceElements::ByCell;
+
+// What the edges from one vertex bring in; edges of other than two faces do not.
+void addCurvatures(const Mesh& mesh, const std::vector<Triangle>& faces, Side* begin, Side* end,
+                   std::vector<Element>& elements) {
+    std::sort(begin, end, [](const Side& a, const Side& b) {
+        return std::tie(a.high, a.face) < std::tie(b.high, b.face);
+    });
+    for (const Side* side = begin; side < end;) {
+        const Side* next = side;
+        while (next < end && next->high == side->high) ++next;
+        if (next - side == 2) {
+            const Vec3d a = corner(mesh, side->low), b = corner(mesh, side->high);
+            const float share = float(length(b - a) * turn(mesh, faces, side[0], side[1]) / 2);
+            if (share != 0) elements.push_back({cast<float>((a + b) * 0.5), share});
+        }
+        side = next;
+    }
+}
+
+// The cell of the voxel whose half-voxel surroundings hold p, as in holds().
+Index3 cellOf(const Vec3f& p) {
+    Index3 cell;
+    for (int axis = 0; axis < 3; ++axis) cell[axis] = int(std::floor((double(p[axis]) + 0.5) / kElementCell));
+    return cell;
+}
+
+std::size_t cellNumber(const IndexBox& cells, const Index3& cell) {
+    const Index3 at = cell - cells.min, size = cells.size();
+    return (std::size_t(at.x) * std::size_t(size.y) + std::size_t(at.y)) * std::size_t(size.z) +
+           std::size_t(at.z);
+}
+
+// Elements as they are found, a list for each fixed share of the work.
+using Lists = std::vector<std::vector<Element>>;
+constexpr std::size_t kShare = 8192;  // faces or vertices
+
+std::size_t shares(std::size_t count) {
+    return (count + kShare - 1) / kShare;
+}
+
+IndexBox cellsOf(const Lists& lists) {
+    IndexBox cells;
+    for (const std::vector<Element>& list : lists)
+        for (const Element& e : list) {
+            const Index3 cell = cellOf(e.middle);
+            if (cells.empty()) cells = {cell, cell};
+            for (int axis = 0; axis < 3; ++axis) {
+                cells.min[axis] = std::min(cells.min[axis], cell[axis]);
+                cells.max[axis] = std::max(cells.max[axis], cell[axis]);
+            }
+        }
+    return cells;
+}
+
+// Within a cell elements keep the order of the lists.
+ByCell byCell(const Lists& lists) {
+    ByCell result;
+    result.cells = cellsOf(lists);
+    if (result.cells.empty()) return result;
+    result.first.assign(std::size_t(result.cells.volume()) + 1, 0);
+    for (const std::vector<Element>& list : lists)
+        for (const Element& e : list) ++result.first[cellNumber(result.cells, cellOf(e.middle)) + 1];
+    for (std::size_t c = 1; c < result.first.size(); ++c) result.first[c] += result.first[c - 1];
+    result.elements.resize(result.first.back());
+    std::vector<std::size_t> next(result.first.begin(), result.first.end() - 1);
+    for (const std::vector<Element>& list : lists)
+        for (const Element& e : list) result.elements[next[cellNumber(result.cells, cellOf(e.middle))]++] = e;
+    return result;
+}
+
+double sumWithin(const ByCell& sorted, const IndexBox& box) {
+    if (box.empty() || sorted.cells.empty()) return 0;
+    const auto corner = [](const Index3& p) { return cellOf({float(p.x), float(p.y), float(p.z)}); };
+    const IndexBox cells = IndexBox{corner(box.min), corner(box.max)}.intersection(sorted.cells);
+    double sum = 0;
+    for (int x = cells.min.x; x <= cells.max.x; ++x)
+        for (int y = cells.min.y; y <= cells.max.y; ++y) {
+            if (cells.min.z > cells.max.z) continue;
+            const std::size_t begin = sorted.first[cellNumber(sorted.cells, {x, y, cells.min.z})],
+                              end = sorted.first[cellNumber(sorted.cells, {x, y, cells.max.z}) + 1];
+            for (std::size_t i = begin; i < end; ++i)
+                if (holds(box, cast<double>(sorted.elements[i].middle)))
+                    sum += double(sorted.elements[i].value);
+        }
+    return sum;
 }
 
 }  // namespace
@@ -160,44 +247,36 @@ double eulerCharacteristic(const Occupancy& solid, Beyond beyond) {
 }
 
 SurfaceElements surfaceElements(const Mesh& mesh, const RunContext& ctx) {
-    SurfaceElements elements;
     const std::vector<Triangle> faces = triangulated(mesh);
-    elements.areas.resize(faces.size());
-    parallelFor(ctx, faces.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t f = begin; f < end; ++f) {
-            const Triangle& t = faces[f];
-            const Vec3d a = corner(mesh, t[0]), b = corner(mesh, t[1]), c = corner(mesh, t[2]);
-            elements.areas[f] = {cast<float>((a + b + c) * (1.0 / 3)),
-                                 float(length(cross(b - a, c - a)) / 2)};
-        }
+    const std::size_t vertices = mesh.points.size();
+    Lists areas(shares(faces.size())), curvatures(shares(vertices));
+    parallelFor(ctx, areas.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t share = begin; share < end; ++share)
+            for (std::size_t f = share * kShare; f < std::min(faces.size(), (share + 1) * kShare); ++f) {
+                const Triangle& t = faces[f];
+                const Vec3d a = corner(mesh, t[0]), b = corner(mesh, t[1]), c = corner(mesh, t[2]);
+                const float area = float(length(cross(b - a, c - a)) / 2);
+                if (area > 0) areas[share].push_back({cast<float>((a + b + c) * (1.0 / 3)), area});
+            }
     });
-    const std::vector<Side> sides = sidesByEdge(faces, mesh.points.size(), ctx);
-    // A pair of sides stands where its first one does; the rest stays empty and goes.
-    std::vector<SurfaceElements::Element> all(sides.size(), {{}, 0});
-    parallelFor(ctx, sides.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        const auto together = [&](std::size_t i, std::size_t k) {
-            return k < sides.size() && sides[i].low == sides[k].low && sides[i].high == sides[k].high;
-        };
-        for (std::size_t i = begin; i < end; ++i) {
-            if ((i > 0 && together(i, i - 1)) || !together(i, i + 1) || together(i, i + 2)) continue;
-            const Vec3d a = corner(mesh, sides[i].low), b = corner(mesh, sides[i].high);
-            const double share = length(b - a) * turn(mesh, faces, sides[i], sides[i + 1]) / 2;
-            all[i] = {cast<float>((a + b) * 0.5), float(share)};
-        }
+    Sides sides = sidesByEdge(faces, vertices);
+    parallelFor(ctx, curvatures.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t share = begin; share < end; ++share)
+            for (std::size_t v = share * kShare; v < std::min(vertices, (share + 1) * kShare); ++v)
+                addCurvatures(mesh, faces, sides.all.data() + sides.first[v],
+                              sides.all.data() + sides.first[v + 1], curvatures[share]);
     });
-    elements.curvatures.reserve(sides.size() / 2);
-    for (const SurfaceElements::Element& element : all)
-        if (element.value != 0) elements.curvatures.push_back(element);
+    SurfaceElements elements;
+    const Lists* const lists[2] = {&areas, &curvatures};
+    ByCell* const sorted[2] = {&elements.areas, &elements.curvatures};
+    parallelFor(ctx, 2, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) *sorted[i] = byCell(*lists[i]);
+    });
     return elements;
 }
 
 SurfaceFunctionals surfaceFunctionals(const SurfaceElements& elements, const IndexBox& box) {
-    SurfaceFunctionals result;
-    for (const SurfaceElements::Element& e : elements.areas)
-        if (holds(box, cast<double>(e.middle))) result.area += double(e.value);
-    for (const SurfaceElements::Element& e : elements.curvatures)
-        if (holds(box, cast<double>(e.middle))) result.meanCurvature += double(e.value);
-    return result;
+    return {sumWithin(elements.areas, box), sumWithin(elements.curvatures, box)};
 }
 
 }  // namespace vdbsynth

@@ -3,6 +3,9 @@
 #include "libvdbsynth/math/index_box.h"
 #include "libvdbsynth/measure/occupancy.h"
 
+#include <cstddef>
+#include <vector>
+
 namespace vdbsynth {
 
 // The Minkowski functionals: volume (Occupancy::count), area, integrated mean curvature, Euler
@@ -23,14 +26,21 @@ double eulerCharacteristic(const Occupancy& solid, Beyond beyond);
 /// Number of voxel corners that eulerCharacteristic summed over: what to divide by for a density.
 double eulerVolume(const Index3& size, Beyond beyond);
 
-/// A surface as what its parts bring in, each at its middle.
+/// A surface as what its parts bring in, each at its middle; by cells of kElementCell^3 voxels, so that a box
+/// asks those near it only.
+inline constexpr int kElementCell = 16;
 struct SurfaceElements {
     struct Element {
         Vec3f middle;
         float value;
     };
-    std::vector<Element> areas;       ///< [triangles] area
-    std::vector<Element> curvatures;  ///< [edges] length times half the angle by which the normal turns there
+    struct ByCell {
+        IndexBox cells;  ///< empty: no elements
+        std::vector<Element> elements;
+        std::vector<std::size_t> first;  ///< [cells + 1, x slowest] where each cell's begin
+    };
+    ByCell areas;       ///< [triangles] area
+    ByCell curvatures;  ///< [edges] length times half the angle by which the normal turns there
 };
 
 /// @param mesh  closed, faces outward; edges of other than two faces bring in no curvature
@@ -45,7 +55,7 @@ struct SurfaceFunctionals {
 /// Area and integrated mean curvature in a box, the latter as the sum over edges of length times half the
 /// turn [cohensteiner2003, section 3].
 /// @param box  in voxel coordinates; it holds what lies within half a voxel around its voxels' centres
-/// @par Repeats yes
+/// @par Cost    O(elements within a cell of the box)   @par Repeats yes
 SurfaceFunctionals surfaceFunctionals(const SurfaceElements& elements, const IndexBox& box);
 
 }  // namespace vdbsynth

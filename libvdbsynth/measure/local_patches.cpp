@@ -42,16 +42,18 @@ bool takePatch(const Occupancy& solid, const Index3& corner, BitPatch& patch) {
     return true;
 }
 
-std::vector<BitPatch> patchesOf(const Occupancy& solid, const RunContext& ctx) {
+std::vector<BitPatch> patchesOf(const PatchBits& from, const RunContext& ctx) {
+    const Occupancy& solid = from.solid;
     const Index3& size = solid.size();
-    const auto steps = [](int n) { return std::max(0, (n + 2 * kPad - kSide) / kStep + 1); };
+    const int pad = from.beyond == Beyond::Void ? kPad : 0;
+    const auto steps = [pad](int n) { return n + 2 * pad < kSide ? 0 : (n + 2 * pad - kSide) / kStep + 1; };
     std::vector<std::vector<BitPatch>> planes{static_cast<std::size_t>(steps(size.x))};
     parallelFor(ctx, planes.size(), 1, [&](std::size_t begin, std::size_t end) {
         BitPatch patch;
         for (std::size_t a = begin; a < end; ++a)
             for (int b = 0; b < steps(size.y); ++b)
                 for (int c = 0; c < steps(size.z); ++c)
-                    if (takePatch(solid, {int(a) * kStep - kPad, b * kStep - kPad, c * kStep - kPad}, patch))
+                    if (takePatch(solid, {int(a) * kStep - pad, b * kStep - pad, c * kStep - pad}, patch))
                         planes[a].push_back(patch);
     });
     std::vector<BitPatch> all;
@@ -75,7 +77,7 @@ __attribute__((target_clones("popcnt", "default"))) double bestOverlap(const Bit
 
 }  // namespace
 
-LocalPatches localPatchSimilarity(const Occupancy& reference, const Occupancy& other, const RunContext& ctx) {
+LocalPatches localPatchSimilarity(const PatchBits& reference, const PatchBits& other, const RunContext& ctx) {
     const std::vector<BitPatch> among = patchesOf(reference, ctx);
     std::vector<BitPatch> queries = patchesOf(other, ctx);
     LocalPatches result;

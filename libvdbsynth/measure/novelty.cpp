@@ -9,13 +9,12 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <tuple>
 
 namespace vdbsynth {
 namespace {
 
 constexpr int kStride = 4;
-constexpr double kPatches = 6000;
+constexpr std::size_t kPatches = 6000;
 constexpr std::size_t kPlaces = 60000;
 constexpr double kNearCost = 0.25;         // [voxels^2] what may turn out a copy when followed downhill
 constexpr double kCopyCost = 0.25 * 0.25;  // [voxels^2]
@@ -55,25 +54,51 @@ void summarizeRuns(DisjointSets& runs, std::size_t count, std::size_t looked, No
     novelty.meanRun = number > 0 ? inRuns / number : 0;
 }
 
-std::size_t differentSources(const std::vector<SourcedVoxel>& voxels) {
-    std::vector<std::tuple<std::int32_t, int, int, int>> sources;
-    sources.reserve(voxels.size());
-    for (const SourcedVoxel& v : voxels) sources.emplace_back(v.exemplar, v.source.x, v.source.y, v.source.z);
+double shareUsed(const std::vector<SourcedVoxel>& voxels, const BrickField& exemplar, const IndexBox& box,
+                 const RunContext& ctx) {
+    std::vector<Index3> sources;
+    for (const SourcedVoxel& v : voxels)
+        if (box.contains(v.source) && std::abs(exemplar.inside(v.source)) < kNearSurface)
+            sources.push_back(v.source);
     std::sort(sources.begin(), sources.end());
-    return std::size_t(std::unique(sources.begin(), sources.end()) - sources.begin());
+    const auto different = std::unique(sources.begin(), sources.end()) - sources.begin();
+    const std::size_t all = countNearSurface(exemplar, box, kNearSurface, ctx);
+    return all > 0 ? double(different) / double(all) : 0;
 }
 
-// A box in the middle of `box` that is expected to hold no more than kPatches of the patches.
-IndexBox middleBox(const IndexBox& box, std::size_t patches) {
-    const double shrink = std::cbrt(std::min(1.0, kPatches / double(std::max<std::size_t>(1, patches))));
-    IndexBox middle = box;
-    for (int axis = 0; axis < 3; ++axis) {
-        const int n = box.size()[axis];
-        const int keep = std::min(n, std::max(2 * kPatchSide, int(n * shrink)));
-        middle.min[axis] += (n - keep) / 2;
-        middle.max[axis] = middle.min[axis] + keep - 1;
-    }
-    return middle;
+int chebyshev(const Index3& a, const Index3& b) {
+    return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
+}
+
+// Leaves at most about kPatches of the places, those nearest to the one that is nearest to the middle of all.
+void keepCompact(std::vector<Index3>& places) {
+    if (places.size() <= kPatches) return;
+    Vec3d sum{0, 0, 0};
+    for (const Index3& p : places) sum = sum + Vec3d{double(p.x), double(p.y), double(p.z)};
+    const Vec3d mean = sum * (1 / double(places.size()));
+    const Index3 middle{int(std::lround(mean.x)), int(std::lround(mean.y)), int(std::lround(mean.z))};
+    const Index3 centre = *std::min_element(
+        places.begin(), places.end(),
+        [&](const Index3& a, const Index3& b) { return chebyshev(a, middle) < chebyshev(b, middle); });
+    std::vector<int> distances;
+    for (const Index3& p : places) distances.push_back(chebyshev(p, centre));
+    std::nth_element(distances.begin(), distances.begin() + std::ptrdiff_t(kPatches), distances.end());
+    const int reach = distances[kPatches];
+    places.erase(std::remove_if(places.begin(), places.end(),
+                                [&](const Index3& p) { return chebyshev(p, centre) >= reach; }),
+                 places.end());
+}
+
+// The box that the patches at these places fill.
+IndexBox boxOf(const std::vector<Index3>& places) {
+    if (places.empty()) return {};
+    IndexBox box{places.front(), places.front()};
+    for (const Index3& p : places)
+        for (int axis = 0; axis < 3; ++axis) {
+            box.min[axis] = std::min(box.min[axis], p[axis]);
+            box.max[axis] = std::max(box.max[axis], p[axis] + kPatchSide - 1);
+        }
+    return box;
 }
 
 // Where a neighbour's source goes on here as a copy too, that is the source: a repeating texture has many
@@ -105,8 +130,8 @@ void followNeighbours(const PatchScale& of, const PatchScale& in, PatchMatches& 
 
 }  // namespace
 
-Novelty measureNovelty(std::vector<SourcedVoxel> voxels, std::size_t looked, std::size_t ofExemplar,
-                       const BrickField& result) {
+Novelty measureNovelty(std::vector<SourcedVoxel> voxels, std::size_t looked, const BrickField& result,
+                       const BrickField& exemplar, const IndexBox& exemplarBox, const RunContext& ctx) {
     Novelty novelty;
     novelty.voxels = voxels.size();
     if (voxels.empty()) return novelty;
@@ -136,7 +161,7 @@ Novelty measureNovelty(std::vector<SourcedVoxel> voxels, std::size_t looked, std
         }
     }
     summarizeRuns(runs, voxels.size(), looked, novelty);
-    novelty.exemplarUsed = ofExemplar > 0 ? double(differentSources(voxels)) / double(ofExemplar) : 0;
+    novelty.exemplarUsed = shareUsed(voxels, exemplar, exemplarBox, ctx);
     if (inner.count > 0 && seams.count > 0 && inner.sum > 0) novelty.seamRatio = seams.mean() / inner.mean();
     if (inner.count + seams.count > 0)
         novelty.seamShare = double(seams.count) / double(inner.count + seams.count);
@@ -182,13 +207,11 @@ MatchedSources sourcesByMatching(std::shared_ptr<const BrickField> result, const
     const PatchSource in = patchSource(exemplar, drawn, ctx);
     if (of.scales.empty() || in.scales.empty()) return found;
     PatchScale& queries = of.scales.front();
-    found.box = middleBox(box, queries.places.size() / (kStride * kStride * kStride));
-    const auto outside = [&](const Index3& p) {
-        return p.x % kStride || p.y % kStride || p.z % kStride ||
-               !found.box.contains(IndexBox::cube(p, kPatchSide));
-    };
-    queries.places.erase(std::remove_if(queries.places.begin(), queries.places.end(), outside),
+    const auto offLattice = [](const Index3& p) { return p.x % kStride || p.y % kStride || p.z % kStride; };
+    queries.places.erase(std::remove_if(queries.places.begin(), queries.places.end(), offLattice),
                          queries.places.end());
+    keepCompact(queries.places);
+    found.box = boxOf(queries.places);
     PatchMatches matches = matchPatches(queries, in.scales.front(), queries.places.size(), kNearCost, ctx);
     followNeighbours(queries, in.scales.front(), matches);
     const int margin = (kPatchSide - kStride) / 2;

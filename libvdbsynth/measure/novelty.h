@@ -8,6 +8,8 @@
 
 namespace vdbsynth {
 
+inline constexpr float kNearSurface = 1.5f;  ///< [voxels] that "near the surface" means
+
 /// Where a voxel near a result's surface came from.
 struct SourcedVoxel {
     Index3 place;   ///< in the result
@@ -21,19 +23,20 @@ struct Novelty {
     double verbatimShare = 0;  ///< of the voxels looked at, that have a neighbour in their run
     double meanRun = 0;        ///< [voxels] mean size of runs of two voxels and more
     double largestRun = 0;     ///< [voxels]
-    double exemplarUsed = 0;   ///< different sources over the exemplar's own voxels near its surface
+    double exemplarUsed = 0;   ///< share of the exemplar's own voxels near its surface that are a source
     double seamRatio = 0;      ///< mean change of the gradient between neighbours of different runs over that
                                ///< within runs: 1 is a seam nobody sees. 0 where there is no seam.
     double seamShare = 0;      ///< of the pairs of neighbours, that belong to different runs
 };
 
-/// @param voxels      those that have a source, any order, no place twice
-/// @param looked      number of voxels looked at, with or without a source
-/// @param ofExemplar  number of voxels near the exemplar's surface
-/// @param result      [voxels] the result's field, for gradients
-/// @par Cost    O(voxels log voxels)   @par Repeats yes
-Novelty measureNovelty(std::vector<SourcedVoxel> voxels, std::size_t looked, std::size_t ofExemplar,
-                       const BrickField& result);
+/// @param voxels       those that have a source, any order, no place twice
+/// @param looked       number of voxels looked at, with or without a source
+/// @param result       [voxels] the result's field, for gradients
+/// @param exemplar     [voxels]
+/// @param exemplarBox  within the exemplar's: only voxels in it and within kNearSurface can be used
+/// @par Cost    O(voxels log voxels + exemplar's voxels)   @par Repeats same bits for any number of threads
+Novelty measureNovelty(std::vector<SourcedVoxel> voxels, std::size_t looked, const BrickField& result,
+                       const BrickField& exemplar, const IndexBox& exemplarBox, const RunContext& ctx = {});
 
 /// Share of the voxels whose value in the result is within a quarter voxel of the value at their source.
 double verifiedShare(const std::vector<SourcedVoxel>& voxels, const BrickField& result,
@@ -45,19 +48,18 @@ std::size_t countNearSurface(const BrickField& field, const IndexBox& box, float
 
 struct MatchedSources {
     std::vector<SourcedVoxel> voxels;  ///< those of patches that are copies
-    std::size_t looked = 0;            ///< voxels near the surface in the box looked at
+    std::size_t looked = 0;            ///< voxels near the surface that were looked at
     IndexBox box;                      ///< looked at
 };
 
 /// Finds where a result without a map came from: patches of 8^3 on every fourth voxel near its surface are
 /// looked for in the exemplar; one that differs by under a quarter voxel (root mean square) counts as a
-/// copy and gives its source to the 4^3 voxels in its middle that are near the surface. At most about 6000
-/// patches are looked for, in the middle of the box.
+/// copy and gives its source to the 4^3 voxels in its middle that are near the surface. Where there are over
+/// 6000 such patches only those are looked for that are nearest to the one nearest to the middle of all: one
+/// cube of them, so that runs stay whole.
 /// @par Repeats same bits for ctx.seed, any number of threads
 MatchedSources sourcesByMatching(std::shared_ptr<const BrickField> result, const IndexBox& box,
                                  std::shared_ptr<const BrickField> exemplar, const IndexBox& exemplarBox,
                                  const RunContext& ctx = {});
-
-inline constexpr float kNearSurface = 1.5f;  ///< [voxels] that "near the surface" means
 
 }  // namespace vdbsynth

@@ -2,6 +2,7 @@
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/grid/brick_field.h"
 #include "libvdbsynth/math/index_box.h"
+#include "libvdbsynth/measure/functionals.h"
 #include "libvdbsynth/measure/occupancy.h"
 
 #include <memory>
@@ -71,14 +72,18 @@ PatchMatches matchPatches(const PatchScale& from, const PatchScale& to, std::siz
 double patchCost(const BrickField& a, const Index3& cornerA, const BrickField& b, const Index3& cornerB);
 
 /// Local-patch similarity of occupancies [wu2022, section 5]: patches of 11^3 voxels, every fifth voxel, of
-/// boxes padded by 5 void voxels, whose middle 3^3 has both kinds; of up to 1000 of `other` by lot the share
-/// whose best match among all of `reference` is over 0.95.
+/// whole objects' boxes padded by 5 void voxels, of textures only inside the box, whose middle 3^3 has both
+/// kinds; of up to 1000 of `other` by lot the share whose best match among all of `reference` is over 0.95.
 struct LocalPatches {
     double shareIoU = 0;    ///< LP-IoU
     double shareScore = 0;  ///< LP-F, the F-score in place of the intersection over union
     double meanIoU = 0;     ///< mean of the best intersection over union
 };
-LocalPatches localPatchSimilarity(const Occupancy& reference, const Occupancy& other,
+struct PatchBits {
+    Occupancy solid;
+    Beyond beyond = Beyond::Void;
+};
+LocalPatches localPatchSimilarity(const PatchBits& reference, const PatchBits& other,
                                   const RunContext& ctx = {});
 
 }  // namespace vdbsynth

@@ -74,6 +74,11 @@ void addChords(const LinesByAxis& lines, std::size_t first, const std::string& o
 
 void addThickness(const Thickness& thickness, const IndexBox& box, int reach, const std::string& name,
                   std::vector<Statistic>& all) {
+    if (thickness.diameter.empty()) {
+        for (const char* what : {" mean", " deviation"}) all.push_back({name + what, 1, false, {}});
+        all.push_back({name + " distribution", 0, true, {}});
+        return;
+    }
     const ThicknessSummary summary = summarize(thickness, box, reach);
     all.push_back({name + " mean", 1, false, {summary.mean}});
     all.push_back({name + " deviation", 1, false, {summary.deviation}});

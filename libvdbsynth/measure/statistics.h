@@ -32,7 +32,9 @@ struct Statistic {
     std::string name;
     int power = 0;  ///< world value = value * voxel size^power (of a number; a curve's abscissa is a length)
     bool curve = false;
-    std::vector<double> values;  ///< [1], [3] by axis, or the curve, for several axes one after another
+    std::vector<double> values;  ///< [1], [3] by axis, or the curve, for several axes one after another;
+                                 ///< empty: not measured (pores of an object)
+    bool measured() const { return !values.empty(); }
 };
 
 /// All statistics of a box of a model that do not depend on the box's size in the mean, in a fixed order.

@@ -41,7 +41,14 @@ Around facesAround(const Mesh& mesh, const std::vector<Triangle>& faces) {
     return around;
 }
 
-SurfaceDistance oneWay(const Mesh& from, const Mesh& to, const RunContext& ctx) {
+bool counts(const Vec3f& p, const std::optional<IndexBox>& within) {
+    for (int axis = 0; within && axis < 3; ++axis)
+        if (p[axis] < float(within->min[axis]) || p[axis] > float(within->max[axis])) return false;
+    return true;
+}
+
+SurfaceDistance oneWay(const Mesh& from, const Mesh& to, const std::optional<IndexBox>& within,
+                       const RunContext& ctx) {
     const std::vector<Triangle> faces = triangulated(to);
     const Around around = facesAround(to, faces), own = facesAround(from, triangulated(from));
     const PointNeighbours neighbours(to.points);
@@ -68,7 +75,8 @@ SurfaceDistance oneWay(const Mesh& from, const Mesh& to, const RunContext& ctx) 
     SurfaceDistance result;
     double area = 0;
     for (std::size_t i = 0; i < distances.size(); ++i) {
-        if (own.area[i] <= 0) continue;  // a vertex of no face is not of the surface
+        // A vertex of no face is not of the surface.
+        if (own.area[i] <= 0 || !counts(from.points[i], within)) continue;
         area += own.area[i];
         result.mean += own.area[i] * distances[i];
         result.rootMean += own.area[i] * distances[i] * distances[i];
@@ -82,8 +90,9 @@ SurfaceDistance oneWay(const Mesh& from, const Mesh& to, const RunContext& ctx) 
 
 }  // namespace
 
-SurfaceDistance surfaceDistance(const Mesh& a, const Mesh& b, const RunContext& ctx) {
-    const SurfaceDistance there = oneWay(a, b, ctx), back = oneWay(b, a, ctx);
+SurfaceDistance surfaceDistance(const Mesh& a, const Mesh& b, const std::optional<IndexBox>& within,
+                                const RunContext& ctx) {
+    const SurfaceDistance there = oneWay(a, b, within, ctx), back = oneWay(b, a, within, ctx);
     return {std::max(there.mean, back.mean), std::max(there.rootMean, back.rootMean),
             std::max(there.hausdorff, back.hausdorff)};
 }

@@ -64,6 +64,12 @@ Verdict judge(const std::vector<Statistic>& parts, const Statistic& result) {
     return verdict;
 }
 
+const Verdict* findVerdict(const std::vector<Verdict>& verdicts, const std::string& name) {
+    for (const Verdict& verdict : verdicts)
+        if (verdict.name == name) return &verdict;
+    return nullptr;
+}
+
 Verdict judgeDistance(const std::string& name, const std::vector<double>& parts, double result) {
     Verdict verdict;
     verdict.name = name;

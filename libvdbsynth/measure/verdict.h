@@ -35,6 +35,9 @@ Verdict judge(const std::vector<Statistic>& parts, const Statistic& result);
 /// exemplar; the mean is 0 by definition.
 Verdict judgeDistance(const std::string& name, const std::vector<double>& parts, double result);
 
+/// @return null if there is none of that name
+const Verdict* findVerdict(const std::vector<Verdict>& verdicts, const std::string& name);
+
 /// How far results are from an exemplar by the yardstick of its process.
 struct Yardstick {
     std::string name;

@@ -63,29 +63,56 @@ ModelStatistics statisticsOf(const CompareInput& input, const PreparedModel& pre
     return result;
 }
 
-// Another model's surface in the voxels of the reference, both beginning where the reference's does.
-Mesh inReferenceVoxels(const LevelSet& reference, const PreparedModel& to, const LevelSet& other,
-                       const PreparedModel& from) {
+// A place in another model's field, in voxels of the reference's.
+template <typename Place>
+openvdb::Vec3d inReferenceVoxels(const LevelSet& reference, const PreparedModel& to, const LevelSet& other,
+                                 const PreparedModel& from, const Place& p) {
+    const auto vec = [](const auto& q) { return openvdb::Vec3d(double(q.x), double(q.y), double(q.z)); };
+    const openvdb::Vec3d world = other.grid->transform().indexToWorld(vec(p) + vec(from.corner));
+    return reference.grid->transform().worldToIndex(world) - vec(to.corner);
+}
+
+Mesh surfaceInReferenceVoxels(const LevelSet& reference, const PreparedModel& to, const LevelSet& other,
+                              const PreparedModel& from) {
     Mesh mesh = from.model.surface;
-    const auto vec = [](const Index3& p) { return openvdb::Vec3d(p.x, p.y, p.z); };
     for (Vec3f& p : mesh.points) {
-        const openvdb::Vec3d world = other.grid->transform().indexToWorld(
-            openvdb::Vec3d(double(p.x), double(p.y), double(p.z)) + vec(from.corner));
-        const openvdb::Vec3d index = reference.grid->transform().worldToIndex(world) - vec(to.corner);
+        const openvdb::Vec3d index = inReferenceVoxels(reference, to, other, from, p);
         p = {float(index.x()), float(index.y()), float(index.z())};
     }
     return mesh;
 }
 
+// Where vertices of the two surfaces count, in the voxels of the reference: not on caps. None: everywhere.
+std::optional<IndexBox> withoutCaps(const LevelSet& reference, const PreparedModel& to, const LevelSet& other,
+                                    const PreparedModel& from) {
+    std::optional<IndexBox> box;
+    const auto narrow = [&](const IndexBox& by) { box = box ? box->intersection(by) : by; };
+    if (to.model.beyond == Beyond::Unknown) narrow(to.model.counted.expanded(-kCapMargin));
+    if (from.model.beyond == Beyond::Unknown) {
+        const IndexBox own = from.model.counted.expanded(-kCapMargin);
+        IndexBox mapped;
+        for (int axis = 0; axis < 3; ++axis) {
+            const openvdb::Vec3d low = inReferenceVoxels(reference, to, other, from, own.min),
+                                 high = inReferenceVoxels(reference, to, other, from, own.max);
+            mapped.min[axis] = int(std::ceil(std::min(low[axis], high[axis])));
+            mapped.max[axis] = int(std::floor(std::max(low[axis], high[axis])));
+        }
+        narrow(mapped);
+    }
+    return box;
+}
+
 // True if nearly all of some vertices of one surface lie within the band of the other: two versions of one
 // object, not two textures in one place.
-bool inOnePlace(const Mesh& mesh, const PreparedModel& to) {
+bool inOnePlace(const Mesh& mesh, const PreparedModel& to, const std::optional<IndexBox>& within) {
     constexpr std::size_t kLooked = 5000;
     const std::size_t step = std::max<std::size_t>(1, mesh.points.size() / kLooked);
     std::size_t looked = 0, near = 0;
-    for (std::size_t i = 0; i < mesh.points.size(); i += step, ++looked) {
+    for (std::size_t i = 0; i < mesh.points.size(); i += step) {
         const Vec3f& p = mesh.points[i];
         const Index3 voxel{int(std::lround(p.x)), int(std::lround(p.y)), int(std::lround(p.z))};
+        if (within && !within->contains(voxel)) continue;
+        ++looked;
         near += to.model.field->box().contains(voxel) && std::abs(to.model.field->inside(voxel)) < kHalfWidth;
     }
     return looked > 0 && near > looked * 9 / 10;
@@ -119,26 +146,26 @@ std::vector<SourcedVoxel> sourcesOfMap(const CompareInput& input, const Prepared
 
 void measureSources(const CompareInput& input, const PreparedModel& result, const PreparedModel& reference,
                     ModelDistances& distances, const RunContext& ctx) {
-    const std::size_t ofExemplar =
-        countNearSurface(*reference.model.field, sourcedBox(reference.model), kNearSurface, ctx);
+    const BrickField &ofResult = *result.model.field, &ofReference = *reference.model.field;
+    const IndexBox from = sourcedBox(reference.model);
     if (input.source) {
         std::vector<SourcedVoxel> voxels = sourcesOfMap(input, result, reference);
-        distances.verified = verifiedShare(voxels, *result.model.field, *reference.model.field);
+        distances.verified = verifiedShare(voxels, ofResult, ofReference);
         if (distances.verified >= 0.9) {
             const std::size_t looked =
-                countNearSurface(*result.model.field, sourcedBox(result.model), kNearSurface, ctx);
+                countNearSurface(ofResult, sourcedBox(result.model), kNearSurface, ctx);
             distances.sourceKind = SourceKind::Map;
-            distances.novelty = measureNovelty(std::move(voxels), looked, ofExemplar, *result.model.field);
+            distances.novelty = measureNovelty(std::move(voxels), looked, ofResult, ofReference, from, ctx);
             return;
         }
     }
-    MatchedSources matched = sourcesByMatching(result.model.field, sourcedBox(result.model),
-                                               reference.model.field, sourcedBox(reference.model), ctx);
+    MatchedSources matched =
+        sourcesByMatching(result.model.field, sourcedBox(result.model), reference.model.field, from, ctx);
     if (matched.looked == 0) return;
     distances.sourceKind = SourceKind::Matching;
     distances.looked = {matched.box.min + result.corner, matched.box.max + result.corner};
     distances.novelty =
-        measureNovelty(std::move(matched.voxels), matched.looked, ofExemplar, *result.model.field);
+        measureNovelty(std::move(matched.voxels), matched.looked, ofResult, ofReference, from, ctx);
 }
 
 ModelDistances distancesOf(const CompareInput& reference, const PreparedModel& to, const CompareInput& other,
@@ -152,13 +179,16 @@ ModelDistances distancesOf(const CompareInput& reference, const PreparedModel& t
                                  std::sqrt(matchPatches(b, a, kMatched, far, ctx).mean),
                                  std::sqrt(matchPatches(a, b, kMatched, far, ctx).mean)});
     }
-    result.localPatches = localPatchSimilarity(to.model.solid.window(to.model.counted),
-                                               from.model.solid.window(from.model.counted), ctx);
+    const auto bits = [](const MeasuredModel& model) {
+        return PatchBits{model.solid.window(model.counted), model.beyond};
+    };
+    result.localPatches = localPatchSimilarity(bits(to.model), bits(from.model), ctx);
     stage.advance();
     Stage last(ctx, other.name + ": novelty", 1);
-    const Mesh mesh = inReferenceVoxels(reference.model, to, other.model, from);
-    if (to.model.surface.faceCount() > 0 && mesh.faceCount() > 0 && inOnePlace(mesh, to))
-        result.surface = surfaceDistance(to.model.surface, mesh, ctx);
+    const Mesh mesh = surfaceInReferenceVoxels(reference.model, to, other.model, from);
+    const std::optional<IndexBox> counted = withoutCaps(reference.model, to, other.model, from);
+    if (to.model.surface.faceCount() > 0 && mesh.faceCount() > 0 && inOnePlace(mesh, to, counted))
+        result.surface = surfaceDistance(to.model.surface, mesh, counted, ctx);
     measureSources(other, from, to, result, ctx);
     last.advance();
     return result;
@@ -212,19 +242,21 @@ Comparison compareModels(const CompareInput& reference, const std::vector<Compar
     result.reference = statisticsOf(reference, to, result.reach, ctx);
     result.crumbLimit = crumbLimitOf(result.reference.topology);
     const Spread spread = parts.empty() ? Spread{} : spreadOf(to, parts, result.reach, ctx);
-    std::vector<PreparedModel> measured;
+    std::vector<ScaleProjections> projections;
     for (const CompareInput& other : others) {
-        measured.push_back(prepareModel(other.name, other.model, coarsening, ctx));
-        result.others.push_back(statisticsOf(other, measured.back(), result.reach, ctx));
+        // One model after another, since what is measured takes far more memory than what is kept.
+        PreparedModel from = prepareModel(other.name, other.model, coarsening, ctx);
+        result.others.push_back(statisticsOf(other, from, result.reach, ctx));
         ModelStatistics& statistics = result.others.back();
-        statistics.crumbs = countCrumbs(measured.back().model, statistics.topology, result.crumbLimit);
-        result.distances.push_back(distancesOf(reference, to, other, measured.back(), ctx));
+        statistics.crumbs = countCrumbs(from.model, statistics.topology, result.crumbLimit);
+        result.distances.push_back(distancesOf(reference, to, other, from, ctx));
         if (!parts.empty())
             result.distances.back().verdicts =
-                verdictsOn(spread, measured.back(), result.distances.back(), result.reach, ctx);
+                verdictsOn(spread, from, result.distances.back(), result.reach, ctx);
+        projections.push_back(std::move(from.projections));
     }
     result.reference.crumbs = countCrumbs(to.model, result.reference.topology, result.crumbLimit);
-    if (options.process) result.yardsticks = yardsticksOf(reference, to, result, measured, options, ctx);
+    if (options.process) result.yardsticks = yardsticksOf(reference, to, result, projections, options, ctx);
     return result;
 }
 

@@ -22,6 +22,13 @@ Mesh surfaceOf(const openvdb::FloatGrid& grid, const Index3& corner, const RunCo
     return mesh;
 }
 
+// What measuring takes at its peak: bits of solid and void, bricks, samples of thickness (distances, balls
+// drawn, the two phases' results), and the surface with its elements and their sides.
+double memoryFor(const IndexBox& box, int coarsening, std::uint64_t active) {
+    const double samples = double(box.volume()) / coarsening / coarsening / coarsening;
+    return double(box.volume()) * (0.25 + 8.0 / 512) + samples * 17 + double(active) * 50;
+}
+
 }  // namespace
 
 PreparedModel prepareModel(const std::string& name, const LevelSet& levelSet, int coarsening,
@@ -29,8 +36,8 @@ PreparedModel prepareModel(const std::string& name, const LevelSet& levelSet, in
     Stage reading(ctx, name + ": meshing", 1);
     const bool whole = !levelSet.domainRecorded;
     const IndexBox box = levelSet.domain.expanded(whole ? kMargin : 0);
-    requireMemory(ctx, double(box.volume()) * (0.25 + 8.0 / 512) + double(activeVoxels(*levelSet.grid)) * 40,
-                  name + ": measuring it", "compare smaller parts of it (crop) or larger voxels");
+    requireMemory(ctx, memoryFor(box, coarsening, activeVoxels(*levelSet.grid)), name + ": measuring it",
+                  "compare smaller parts of it (crop) or larger voxels");
     PreparedModel result;
     result.corner = box.min;
     MeasuredModel& model = result.model;

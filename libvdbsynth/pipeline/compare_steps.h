@@ -43,9 +43,13 @@ Spread spreadOf(const PreparedModel& reference, const std::vector<IndexBox>& par
 std::vector<Verdict> verdictsOn(const Spread& spread, const PreparedModel& other,
                                 const ModelDistances& distances, int reach, const RunContext& ctx);
 
-/// @param others  the models of comparison.others
+/// What is kept of a model when its measuring is over: for yardsticks.
+using ScaleProjections = std::vector<Projections>;
+
+/// Rows for what can be measured of the reference and of all samples.
+/// @param others  projections of the models of comparison.others
 std::vector<Yardstick> yardsticksOf(const CompareInput& reference, const PreparedModel& to,
-                                    const Comparison& comparison, const std::vector<PreparedModel>& others,
+                                    const Comparison& comparison, const std::vector<ScaleProjections>& others,
                                     const CompareOptions& options, const RunContext& ctx);
 
 }  // namespace vdbsynth

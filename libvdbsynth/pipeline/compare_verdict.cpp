@@ -9,6 +9,7 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <map>
 
 namespace vdbsynth {
 namespace {
@@ -83,18 +84,38 @@ LevelSet shiftedByHalf(const LevelSet& model, const RunContext& ctx) {
     return result;
 }
 
-// Distances of one model from the reference, by name: those that a yardstick is made of.
-std::vector<std::pair<std::string, double>> yardstickDistances(const ModelStatistics& reference,
-                                                               const PreparedModel& to,
-                                                               const std::vector<Statistic>& statistics,
-                                                               const PreparedModel& from,
-                                                               const RunContext& ctx) {
-    std::vector<std::pair<std::string, double>> result;
-    for (std::size_t i = 0; i < statistics.size(); ++i)
-        result.emplace_back(statistics[i].name, statisticDistance(reference.statistics[i], statistics[i]));
-    for (std::size_t s = 0; s < std::min(to.projections.size(), from.projections.size()); ++s)
-        result.emplace_back(scaleName(s), slicedWasserstein(to.projections[s], from.projections[s], ctx));
+using DistancesByName = std::map<std::string, double>;
+
+// Distances of one model from the reference: those that a yardstick is made of.
+DistancesByName yardstickDistances(const ModelStatistics& reference, const PreparedModel& to,
+                                   const std::vector<Statistic>& statistics, const ScaleProjections& from,
+                                   const RunContext& ctx) {
+    DistancesByName result;
+    for (const Statistic& other : statistics)
+        for (const Statistic& own : reference.statistics)
+            if (own.name == other.name && own.measured() && other.measured())
+                result[own.name] = statisticDistance(own, other);
+    for (std::size_t s = 0; s < std::min(to.projections.size(), from.size()); ++s)
+        result[scaleName(s)] = slicedWasserstein(to.projections[s], from[s], ctx);
     return result;
+}
+
+// One row for each thing that can be measured of the reference, in the order of its statistics.
+std::vector<Yardstick> emptyYardsticks(const ModelStatistics& reference, std::size_t scales) {
+    std::vector<Yardstick> rows;
+    for (const Statistic& statistic : reference.statistics)
+        if (statistic.measured()) rows.push_back({statistic.name, 0, 0, 0});
+    for (std::size_t s = 0; s < scales; ++s) rows.push_back({scaleName(s), 0, 0, 0});
+    return rows;
+}
+
+// Adds one sample's share; rows that it has no number for go, since their mean would not be one.
+void addSample(const DistancesByName& distances, double share, double Yardstick::*member,
+               std::vector<Yardstick>& rows) {
+    rows.erase(std::remove_if(rows.begin(), rows.end(),
+                              [&](const Yardstick& row) { return distances.count(row.name) == 0; }),
+               rows.end());
+    for (Yardstick& row : rows) row.*member += distances.at(row.name) * share;
 }
 
 }  // namespace
@@ -125,9 +146,11 @@ std::vector<Verdict> verdictsOn(const Spread& spread, const PreparedModel& other
                                 const ModelDistances& distances, int reach, const RunContext& ctx) {
     const std::vector<Statistic> statistics = meanOverParts(other.model, spread.part, reach, ctx);
     std::vector<Verdict> verdicts;
-    for (std::size_t i = 0; i < statistics.size(); ++i)
-        verdicts.push_back(judge(spread.statistics[i], statistics[i]));
-    for (std::size_t s = 0; s < distances.scales.size(); ++s)
+    for (const Statistic& own : statistics)
+        for (const std::vector<Statistic>& parts : spread.statistics)
+            if (parts.front().name == own.name && parts.front().measured() && own.measured())
+                verdicts.push_back(judge(parts, own));
+    for (std::size_t s = 0; s < std::min(distances.scales.size(), spread.wasserstein.size()); ++s)
         if (!spread.wasserstein[s].empty())
             verdicts.push_back(
                 judgeDistance(scaleName(s), spread.wasserstein[s], distances.scales[s].wasserstein));
@@ -135,24 +158,21 @@ std::vector<Verdict> verdictsOn(const Spread& spread, const PreparedModel& other
 }
 
 std::vector<Yardstick> yardsticksOf(const CompareInput& reference, const PreparedModel& to,
-                                    const Comparison& comparison, const std::vector<PreparedModel>& others,
+                                    const Comparison& comparison, const std::vector<ScaleProjections>& others,
                                     const CompareOptions& options, const RunContext& ctx) {
-    std::vector<Yardstick> yardsticks;
-    const auto add = [&](const std::vector<Statistic>& statistics, const PreparedModel& from, double share,
+    std::vector<Yardstick> yardsticks = emptyYardsticks(comparison.reference, to.projections.size());
+    const auto add = [&](const std::vector<Statistic>& statistics, const ScaleProjections& from, double share,
                          double Yardstick::*member) {
-        const auto distances = yardstickDistances(comparison.reference, to, statistics, from, ctx);
-        yardsticks.resize(std::max(yardsticks.size(), distances.size()));
-        for (std::size_t i = 0; i < distances.size(); ++i) {
-            yardsticks[i].name = distances[i].first;
-            yardsticks[i].*member += distances[i].second * share;
-        }
+        addSample(yardstickDistances(comparison.reference, to, statistics, from, ctx), share, member,
+                  yardsticks);
     };
     for (std::size_t i = 0; i < others.size(); ++i)
         add(comparison.others[i].statistics, others[i], 1.0 / double(others.size()), &Yardstick::results);
     const auto measure = [&](const LevelSet& model, const std::string& name, double share,
                              double Yardstick::*member) {
         const PreparedModel fresh = prepareModel(name, model, to.model.thickness.coarsening, ctx);
-        add(measureStatistics(fresh.model, fresh.model.counted, comparison.reach, ctx), fresh, share, member);
+        add(measureStatistics(fresh.model, fresh.model.counted, comparison.reach, ctx), fresh.projections,
+            share, member);
     };
     measure(shiftedByHalf(reference.model, ctx), "the shifted reference", 1, &Yardstick::shifted);
     for (int i = 0; i < options.fresh; ++i) {

@@ -2,6 +2,7 @@
 """Runs every benchmark: those of the command line here, those in the process by Google Benchmark. Prints a table of budget,
 measured, rival and ratio, and the growth of time and memory with active voxels; writes both to bench.json.
 Usage: bench.py BUILD_FOLDER [--quick] [ROW...]"""
+import contextlib
 import json
 import os
 import pathlib
@@ -38,13 +39,17 @@ def measured(words, folder, timeout=900):
     return time.monotonic() - began, usage.ru_maxrss * 1024
 
 
+class Failed(RuntimeError):
+    """A command of a row did not work: the row is left out and the run fails in the end."""
+
+
 class Bench:
     def __init__(self, build, quick, words):
         self.program = str(pathlib.Path(build).resolve() / "tools/vdb_synth/vdb_synth")
         self.match = str(pathlib.Path(build).resolve() / "tests/bench/block_match_bench")
         self.quick, self.words = quick, words
         self.folder = tempfile.mkdtemp(prefix="vdbsynth_bench_")
-        self.rows, self.growth = [], []
+        self.rows, self.growth, self.failures = [], [], 0
 
     def wanted(self, name):
         return not self.words or any(word in name for word in self.words)
@@ -53,10 +58,26 @@ class Bench:
         """Seconds of the work, peak bytes, and the report."""
         result = measured([self.program, *words, "-q", "--report", "report.json"], self.folder, timeout)
         if result is None:
-            return None
+            raise Failed(" ".join(map(str, words)))
         with open(os.path.join(self.folder, "report.json"), encoding="utf-8") as file:
             report = json.load(file)
         return result[0], report["peak_bytes"], report
+
+    def seconds(self, *words):
+        """Median of five runs of a command."""
+        runs = [measured(words, self.folder) for _ in range(5)]
+        if None in runs:
+            raise Failed(" ".join(map(str, words)))
+        return statistics.median(run[0] for run in runs)
+
+    @contextlib.contextmanager
+    def attempt(self, name):
+        """One row's failure does not end the others."""
+        try:
+            yield
+        except (Failed, subprocess.CalledProcessError) as error:
+            self.failures += 1
+            print(f"{name:34} failed: {error}", flush=True)
 
     def row(self, name, budget, ours, rival, ratio, note=""):
         self.rows.append({"name": name, "budget": budget, "measured": ours, "rival": rival, "ratio": ratio, "note": note})
@@ -67,91 +88,97 @@ class Bench:
         print(f"{work:34} {voxels:>12} active voxels {seconds:8.2f} s {peak / 1e6:8.0f} MB", flush=True)
 
     def block_match(self):
-        environment = {**os.environ, "VDBSYNTH_BENCH_QUERIES": "20" if self.quick else "200"}
         for kind in ("balls_0.4", "balls_0.75", "balls_1", "balls_1.5", "sponge", "terrain"):
             for size in ("64/8", "128/16", "256/32"):
                 name = f"match {kind} {size}"
                 if not self.wanted(name) or (self.quick and size == "256/32"):
                     continue
-                result = subprocess.run([self.match, f"--benchmark_filter=^(ours|fftw)/{kind}/{size}/", "--benchmark_format=json"],
-                                        env=environment, capture_output=True, text=True, check=True)
-                found = {b["name"].split("/")[0]: b for b in json.loads(result.stdout)["benchmarks"]}
-                ours, rival = found["ours"], found["fftw"]
-                each = lambda b: b["real_time"] / b["queries"]
-                radius = kind.startswith("balls_") and float(kind[6:]) >= 0.75
-                budget = "3x" if radius and size == "128/16" else "5x" if radius and size == "256/32" else "at most 4x slower"
-                self.row(name, f"{budget} of FFTW", f"{each(ours):.2f} ms a query", f"{each(rival):.2f} ms",
-                         f"{each(rival) / each(ours):.2f}x",
-                         f"index {ours['build_seconds']:.1f} s, {ours['index_MB']:.0f} MB; dearer: {ours['dearer_than_rival']:.0f}")
+                with self.attempt(name):
+                    self.block_match_row(name, kind, size)
+
+    def block_match_row(self, name, kind, size):
+        environment = {**os.environ, "VDBSYNTH_BENCH_QUERIES": "20" if self.quick else "200"}
+        result = subprocess.run([self.match, f"--benchmark_filter=^(ours|fftw)/{kind}/{size}/", "--benchmark_format=json"],
+                                env=environment, capture_output=True, text=True, check=True)
+        found = {b["name"].split("/")[0]: b for b in json.loads(result.stdout)["benchmarks"]}
+        ours, rival = found["ours"], found["fftw"]
+        each = lambda b: b["real_time"] / b["queries"]
+        radius = kind.startswith("balls_") and float(kind[6:]) >= 0.75
+        budget = "3x" if radius and size == "128/16" else "5x" if radius and size == "256/32" else "at most 4x slower"
+        self.row(name, f"{budget} of FFTW", f"{each(ours):.2f} ms a query", f"{each(rival):.2f} ms", f"{each(rival) / each(ours):.2f}x",
+                 f"index {ours['build_seconds']:.1f} s, {ours['index_MB']:.0f} MB; dearer: {ours['dearer_than_rival']:.0f}")
 
     def synthesis(self):
         for kind in ("balls", "grid", "foam", "sponge"):
             name = f"synth {kind} 64^3 to 128^3"
             if not self.wanted(name):
                 continue
-            self.tool("make", kind, "exemplar.vdb", "--resolution", 64)
-            result = self.tool("synth", "exemplar.vdb", "-o", "more.vdb", "--size", "2x,2x,2x", "--block", 16, "--levels", 3)
-            if result:
+            with self.attempt(name):
+                self.tool("make", kind, "exemplar.vdb", "--resolution", 64)
+                result = self.tool("synth", "exemplar.vdb", "-o", "more.vdb", "--size", "2x,2x,2x", "--block", 16, "--levels", 3)
                 self.row(name, "3 s, 1 GB", f"{result[0]:.1f} s, {result[1] / 1e9:.2f} GB", "1 to 12 h (2004)", "",
                          "the paper's time, on its machine")
         name = "synth grid 64^3 to 512^3"
         if self.wanted(name) and not self.quick:
-            self.tool("make", "grid", "exemplar.vdb", "--resolution", 64)
-            result = self.tool("synth", "exemplar.vdb", "-o", "more.vdb", "--size", "8x,8x,8x", timeout=900)
-            self.row(name, "180 s, 4 GB", f"{result[0]:.0f} s, {result[1] / 1e9:.2f} GB" if result else "over 900 s or no memory", "none", "")
+            with self.attempt(name):
+                self.tool("make", "grid", "exemplar.vdb", "--resolution", 64)
+                result = self.tool("synth", "exemplar.vdb", "-o", "more.vdb", "--size", "8x,8x,8x", timeout=1800)
+                self.row(name, "180 s, 4 GB", f"{result[0]:.0f} s, {result[1] / 1e9:.2f} GB", "none", "")
 
     def compare(self):
         for kind in ("balls", "sponge", "terrain"):
             name = f"compare {kind} 256^3"
             if not self.wanted(name):
                 continue
-            for seed in (1, 2):
-                self.tool("make", kind, f"{seed}.vdb", "--resolution", 256, "--seed", seed)
-            result = self.tool("compare", "1.vdb", "2.vdb")
-            if result:
+            with self.attempt(name):
+                for seed in (1, 2):
+                    self.tool("make", kind, f"{seed}.vdb", "--resolution", 256, "--seed", seed)
+                result = self.tool("compare", "1.vdb", "2.vdb")
                 self.row(name, "20 s", f"{result[0]:.1f} s, {result[1] / 1e9:.2f} GB", "none", "", "both models, verdict included")
 
     def meshes(self):
-        rival = shutil.which("vdb_tool")
         for file, resolution in (("bunny.off", 200), ("bunny.off", 500), ("dragon_vrip_res2.ply.gz", 300), ("fandisk.obj", 300)):
             name = f"convert {file} {resolution}"
             path = os.path.join(SAMPLES, "meshes", file)
-            if not self.wanted(name) or not os.path.exists(path):
-                continue
-            self.tool("convert", path, "-o", "at.vdb", "--resolution", resolution)
-            with open(os.path.join(self.folder, "report.json"), encoding="utf-8") as report:
-                voxels = json.load(report)["counts"]["active_voxels"]
-            info = json.loads(subprocess.run([self.program, "info", "at.vdb", "--json"], cwd=self.folder, capture_output=True, text=True,
-                                             check=True).stdout)
-            voxel = info["model"]["voxel_size"]
-            # Both read the same .ply, as vertices and triangles.
-            self.tool("convert", path, "-o", "high.vdb", "--resolution", 400)
-            self.tool("convert", "high.vdb", "-o", "mesh.ply")
-            ours = statistics.median(measured([self.program, "convert", "mesh.ply", "-o", "ours.vdb", "--voxel-size", voxel, "-q"],
-                                              self.folder)[0] for _ in range(5))
-            if rival:
-                theirs = statistics.median(measured([rival, "-read", "mesh.ply", "-mesh2ls", f"voxel={voxel}", "width=3", "-write", "t.vdb"],
-                                                    self.folder)[0] for _ in range(5))
-                self.row(name, "1.1x of vdb_tool's time", f"{ours:.2f} s", f"{theirs:.2f} s", f"{ours / theirs:.2f}x", f"{voxels} active voxels")
+            if self.wanted(name) and os.path.exists(path):
+                with self.attempt(name):
+                    self.mesh_row(name, path, resolution)
+
+    def mesh_row(self, name, path, resolution):
+        rival = shutil.which("vdb_tool")
+        voxels = self.tool("convert", path, "-o", "at.vdb", "--resolution", resolution)[2]["counts"]["active_voxels"]
+        info = json.loads(subprocess.run([self.program, "info", "at.vdb", "--json"], cwd=self.folder, capture_output=True, text=True,
+                                         check=True).stdout)
+        voxel = info["model"]["voxel_size"]
+        # Both read the same .ply, as vertices and triangles.
+        self.tool("convert", path, "-o", "high.vdb", "--resolution", 400)
+        self.tool("convert", "high.vdb", "-o", "mesh.ply")
+        ours = self.seconds(self.program, "convert", "mesh.ply", "-o", "ours.vdb", "--voxel-size", voxel, "-q")
+        if rival:
+            theirs = self.seconds(rival, "-read", "mesh.ply", "-mesh2ls", f"voxel={voxel}", "width=3", "-write", "t.vdb")
+            self.row(name, "1.1x of vdb_tool's time", f"{ours:.2f} s", f"{theirs:.2f} s", f"{ours / theirs:.2f}x", f"{voxels} active voxels")
+        else:
+            self.row(name, "1.1x of vdb_tool's time", f"{ours:.2f} s", "not installed", "", f"{voxels} active voxels")
 
     def growth_curves(self):
-        if self.wanted("growth convert"):
-            for resolution in (64, 128, 256, 512, 1024):
-                result = self.tool("convert", os.path.join(SAMPLES, "meshes", "bunny.off"), "-o", "g.vdb", "--resolution", resolution)
-                if result:
+        bunny = os.path.join(SAMPLES, "meshes", "bunny.off")
+        for resolution in (64, 128, 256, 512, 1024):
+            if self.wanted("growth convert") and os.path.exists(bunny):
+                with self.attempt("growth convert"):
+                    result = self.tool("convert", bunny, "-o", "g.vdb", "--resolution", resolution)
                     self.grow("growth convert bunny", result[2]["counts"]["active_voxels"], result[0], result[1])
-        if self.wanted("growth synth"):
-            self.tool("make", "grid", "exemplar.vdb", "--resolution", 64)
-            for size in ("1x,1x,1x", "2x,2x,1x", "4x,4x,1x", "4x,4x,4x") if not self.quick else ("1x,1x,1x", "2x,2x,1x"):
-                result = self.tool("synth", "exemplar.vdb", "-o", "g.vdb", "--size", size)
-                if result:
+        for size in ("1x,1x,1x", "2x,2x,1x", "4x,4x,1x", "4x,4x,4x") if not self.quick else ("1x,1x,1x", "2x,2x,1x"):
+            if self.wanted("growth synth"):
+                with self.attempt(f"growth synth {size}"):
+                    self.tool("make", "grid", "exemplar.vdb", "--resolution", 64)
+                    result = self.tool("synth", "exemplar.vdb", "-o", "g.vdb", "--size", size)
                     self.grow(f"growth synth grid {size}", result[2]["counts"]["active_voxels"], result[0], result[1])
-        if self.wanted("growth compare"):
-            for resolution in (64, 128, 256):
-                made = self.tool("make", "sponge", "1.vdb", "--resolution", resolution)
-                self.tool("make", "sponge", "2.vdb", "--resolution", resolution, "--seed", 2)
-                result = self.tool("compare", "1.vdb", "2.vdb")
-                if result:
+        for resolution in (64, 128, 256):
+            if self.wanted("growth compare"):
+                with self.attempt(f"growth compare {resolution}"):
+                    made = self.tool("make", "sponge", "1.vdb", "--resolution", resolution)
+                    self.tool("make", "sponge", "2.vdb", "--resolution", resolution, "--seed", 2)
+                    result = self.tool("compare", "1.vdb", "2.vdb")
                     self.grow(f"growth compare sponge {resolution}", made[2]["counts"]["active_voxels"], result[0], result[1])
 
     def run(self):
@@ -163,7 +190,7 @@ class Bench:
         for part in (self.meshes, self.synthesis, self.compare, self.block_match, self.growth_curves):
             part()
         shutil.rmtree(self.folder, ignore_errors=True)
-        return {"machine": machine, "rows": self.rows, "growth": self.growth}
+        return {"machine": machine, "rows": self.rows, "growth": self.growth, "failures": self.failures}
 
 
 def markdown(result):
@@ -184,7 +211,8 @@ def main(words):
         json.dump(result, file, indent=1)
     with open(os.path.join(build, "bench.md"), "w", encoding="utf-8") as file:
         file.write(markdown(result))
+    return 1 if result["failures"] else 0
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    sys.exit(main(sys.argv[1:]))

@@ -33,6 +33,25 @@ TEST_CASE("twoPointCorrelation: slabs have a triangle wave across and a constant
     CHECK(s2.radial[0] == Approx(0.5));
 }
 
+TEST_CASE("radialShifts: lengths round to r, none twice, in no preferred direction", "[measure][property]") {
+    CHECK(radialShifts(0) == std::vector<Index3>{{0, 0, 0}});
+    for (int r = 1; r <= 64; ++r) {
+        const std::vector<Index3> shifts = radialShifts(r);
+        CHECK(shifts.size() <= 48);
+        CHECK(shifts.size() >= (r == 1 ? 9u : 20u));
+        double squares[3] = {0, 0, 0};
+        for (const Index3& p : shifts) {
+            const double length = std::sqrt(double(p.x * p.x + p.y * p.y + p.z * p.z));
+            CHECK(std::lround(length) == r);
+            CHECK(std::count(shifts.begin(), shifts.end(), p) == 1);
+            if (r > 0) CHECK(std::count(shifts.begin(), shifts.end(), p * -1) == 0);
+            for (int axis = 0; axis < 3; ++axis)
+                squares[axis] += double(p[axis] * p[axis]) / (length * length);
+        }
+        for (double share : squares) CHECK(share / double(shifts.size()) == Approx(1.0 / 3).margin(0.04));
+    }
+}
+
 TEST_CASE("twoPointCorrelation: overlapping balls follow Torquato's closed form", "[measure][oracle]") {
     // Boolean model: S2(r) = 1 - 2 q + q^(union of two balls / ball), void fraction q = exp(-density * ball).
     const double radius = 6, density = 4e-4, ball = 4.0 / 3 * kPi * radius * radius * radius;

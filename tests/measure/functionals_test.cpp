@@ -111,7 +111,30 @@ TEST_CASE("surfaceFunctionals: a box has its area and 3 pi a, a notch turns the 
     for (Quad& quad : box.quads) std::reverse(quad.begin(), quad.end());
     CHECK(surfaceFunctionals(surfaceElements(box), {{0, 0, 0}, {20, 20, 20}}).meanCurvature ==
           Approx(-3 * kPi * 10).epsilon(1e-6));
-    CHECK(surfaceElements(Mesh{}).areas.empty());
+    CHECK(surfaceElements(Mesh{}).areas.elements.empty());
+    CHECK(surfaceFunctionals(surfaceElements(Mesh{}), {{0, 0, 0}, {20, 20, 20}}).area == 0);
+}
+
+TEST_CASE("surfaceFunctionals: the boxes of any partition sum to the whole", "[measure][property]") {
+    Mesh ball = test::sphereMesh(25.3, 4);
+    for (Vec3f& p : ball.points) p = p + Vec3f{-3, 20, 9};
+    const SurfaceElements elements = surfaceElements(ball);
+    const IndexBox around{{-40, -20, -30}, {37, 57, 49}};
+    const SurfaceFunctionals all = surfaceFunctionals(elements, around);
+    CHECK(all.area == Approx(4 * kPi * 25.3 * 25.3).epsilon(0.01));
+    for (int side : {5, 16, 23}) {
+        SurfaceFunctionals sum;
+        for (int x = around.min.x; x <= around.max.x; x += side)
+            for (int y = around.min.y; y <= around.max.y; y += side)
+                for (int z = around.min.z; z <= around.max.z; z += side) {
+                    const SurfaceFunctionals part =
+                        surfaceFunctionals(elements, IndexBox::cube({x, y, z}, side).intersection(around));
+                    sum.area += part.area;
+                    sum.meanCurvature += part.meanCurvature;
+                }
+        CHECK(sum.area == Approx(all.area));
+        CHECK(sum.meanCurvature == Approx(all.meanCurvature));
+    }
 }
 
 TEST_CASE("findComponents: parts, their sizes, and which touch the box", "[measure][oracle]") {

@@ -319,3 +319,55 @@ TEST_CASE("compareModels: an object beside a texture, both ways, with axes given
     }
     CHECK(compared(ball(12), ball(12)).distances.front().localPatches.shareIoU == 1);
 }
+
+TEST_CASE("compareModels: caps of two textures in one place are no distance between them",
+          "[pipeline][property]") {
+    // Rods along x, cut by domains that begin and end three voxels apart.
+    openvdb::initialize();
+    const auto rods = [](int from) {
+        const IndexBox domain{{from, 0, 0}, {from + 47, 39, 39}};
+        const BrickField field =
+            BrickField::generate(domain.expanded(6), {}, [](const IndexBox& brick, float* samples) {
+                for (int x = brick.min.x; x <= brick.max.x; ++x)
+                    for (int y = brick.min.y; y <= brick.max.y; ++y)
+                        for (int z = brick.min.z; z <= brick.max.z; ++z) {
+                            const double cy = y - (std::floor(y / 20.0) * 20 + 9.5),
+                                         cz = z - (std::floor(z / 20.0) * 20 + 9.5);
+                            *samples++ = float(std::clamp(std::hypot(cy, cz) - 6, -4.0, 4.0));
+                        }
+            });
+        return modelFromField(field, 4, false, domain, 1, "rods", "");
+    };
+    const Comparison c = compared(rods(0), rods(3));
+    const ModelDistances& d = c.distances.front();
+    REQUIRE(d.surface.has_value());
+    CHECK(d.surface->hausdorff < 0.05);
+    CHECK(d.localPatches.shareIoU == 1);
+    CHECK(d.novelty.exemplarUsed > 0.2);
+    CHECK(d.novelty.exemplarUsed <= 1);
+}
+
+TEST_CASE("compareModels: an object has no pores, and no row, verdict or yardstick of them",
+          "[pipeline][property]") {
+    const auto pores = [](const ModelStatistics& m) {
+        for (const Statistic& statistic : m.statistics)
+            if (statistic.name == "pore size mean") return statistic.measured();
+        return true;
+    };
+    CompareOptions options;
+    options.stationary = std::array<bool, 3>{true, false, false};
+    options.process = ExemplarOptions{};
+    options.process->kind = "balls";
+    options.fresh = 2;
+    const LevelSet texture = made("balls", 32);
+    const Comparison c = compared(texture, ball(14), options);
+    CHECK(pores(c.reference));
+    CHECK_FALSE(pores(c.others.front()));
+    for (const Verdict& verdict : c.distances.front().verdicts)
+        CHECK(verdict.name.find("pore") == std::string::npos);
+    for (const Yardstick& row : c.yardsticks) CHECK(row.name.find("pore") == std::string::npos);
+    CHECK(c.yardsticks.size() > 10);
+    options.stationary.reset();
+    const Comparison textures = compared(texture, made("balls", 32, 5), options);
+    CHECK(textures.yardsticks.size() == c.yardsticks.size() + 3);
+}

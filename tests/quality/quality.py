@@ -160,6 +160,7 @@ def main():
     parser.add_argument("--synth", default="")
     parser.add_argument("--name", default="default")
     quality = Quality(parser.parse_intermixed_args())
+    failures = 0
     for name, (words, size, process) in {**MADE, **REAL}.items():
         if quality.arguments.exemplars and not any(word in name for word in quality.arguments.exemplars):
             continue
@@ -167,8 +168,9 @@ def main():
             quality.run(name, words, size, process)
         except RuntimeError as error:
             print(f"{name:10} failed: {error}", flush=True)
+            failures += 1
     quality.finish()
-    return 0
+    return 1 if failures else 0
 
 
 if __name__ == "__main__":

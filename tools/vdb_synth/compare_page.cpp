@@ -113,6 +113,7 @@ std::string chart(const std::string& title, const std::vector<NamedCurve>& curve
     if (high <= low) high = low + 1;
     std::string lines, json;
     for (std::size_t c = 0; c < curves.size(); ++c) {
+        if (curves[c].values.empty()) continue;
         std::string points, values;
         for (std::size_t i = 0; i < curves[c].values.size(); ++i) {
             const double value = curves[c].values[i];
@@ -121,8 +122,8 @@ std::string chart(const std::string& title, const std::vector<NamedCurve>& curve
         }
         lines += "<polyline fill=\"none\" stroke-width=\"2\" stroke=\"" +
                  std::string(kColours[c % std::size(kColours)]) + "\" points=\"" + points + "\"/>";
-        json += std::string(c ? "," : "") + "{\"name\":\"" + jsonName(curves[c].name) + "\",\"values\":[" +
-                values + "]}";
+        json += std::string(json.empty() ? "" : ",") + "{\"name\":\"" + jsonName(curves[c].name) +
+                "\",\"values\":[" + values + "]}";
     }
     return "<figure><svg viewBox=\"0 0 400 210\" data-curves=\"" + escaped("[" + json + "]") +
            "\"><g font-size=\"11\" fill=\"#55606a\"><text x=\"2\" y=\"24\">" + shortNumber(high) +
@@ -140,10 +141,11 @@ std::string charts(const Comparison& comparison, std::size_t s) {
     for (std::size_t part = 0; part < first.values.size() / length; ++part) {
         std::vector<NamedCurve> curves;
         const auto add = [&](const ModelStatistics& model) {
-            if (s >= model.statistics.size()) return;
-            const std::vector<double>& values = model.statistics[s].values;
+            const std::vector<double>& values = model.statistics.at(s).values;
+            curves.push_back({model.name, {}});  // stays empty, in its colour's place, where not measured
+            if (values.size() < (part + 1) * length) return;
             const auto begin = values.begin() + std::ptrdiff_t(part * length);
-            curves.push_back({model.name, std::vector<double>(begin, begin + std::ptrdiff_t(length))});
+            curves.back().values.assign(begin, begin + std::ptrdiff_t(length));
         };
         add(comparison.reference);
         for (const ModelStatistics& other : comparison.others) add(other);
@@ -165,6 +167,7 @@ std::string verdictCell(const Verdict& verdict) {
 }
 
 std::string numbers(const Statistic& statistic) {
+    if (!statistic.measured()) return "-";
     if (statistic.curve) return "curve";
     std::string text;
     for (double value : statistic.values) text += (text.empty() ? "" : ", ") + shortNumber(value);
@@ -181,19 +184,18 @@ std::string statisticsTable(const Comparison& comparison, std::size_t i) {
     for (std::size_t s = 0; s < count; ++s) {
         std::vector<std::string> row{escaped(other.statistics[s].name), numbers(reference.statistics[s]),
                                      numbers(other.statistics[s])};
-        if (verdicts.empty())
-            row.insert(
-                row.end(),
-                {shortNumber(statisticDistance(reference.statistics[s], other.statistics[s])), "", "", ""});
+        const Statistic &a = reference.statistics[s], &b = other.statistics[s];
+        if (const Verdict* v = findVerdict(verdicts, b.name))
+            row.insert(row.end(), {shortNumber(v->distance), shortNumber(v->sigma), shortNumber(v->away()),
+                                   verdictCell(*v)});
         else
-            row.insert(row.end(), {shortNumber(verdicts[s].distance), shortNumber(verdicts[s].sigma),
-                                   shortNumber(verdicts[s].away()), verdictCell(verdicts[s])});
+            row.insert(row.end(), {a.measured() && b.measured() ? shortNumber(statisticDistance(a, b)) : "-",
+                                   "", "", ""});
         html += cells(row);
     }
-    for (std::size_t v = count; v < verdicts.size(); ++v)
-        html += cells({escaped(verdicts[v].name), "0", shortNumber(verdicts[v].distance),
-                       shortNumber(verdicts[v].distance), shortNumber(verdicts[v].sigma),
-                       shortNumber(verdicts[v].away()), verdictCell(verdicts[v])});
+    for (const Verdict& v : scaleVerdicts(comparison, i))
+        html += cells({escaped(v.name), "0", shortNumber(v.distance), shortNumber(v.distance),
+                       shortNumber(v.sigma), shortNumber(v.away()), verdictCell(v)});
     return html + "</table>\n";
 }
 

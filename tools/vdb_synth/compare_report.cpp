@@ -20,6 +20,7 @@ constexpr std::size_t kName = 38, kNumber = 13;
 
 // What a person reads of a statistic: a number, three by axis, or that it is a curve.
 std::string valueText(const Statistic& statistic, double voxel) {
+    if (!statistic.measured()) return "-";
     if (statistic.curve) return "curve";
     std::string text;
     for (double value : statistic.values)
@@ -52,11 +53,9 @@ void appendStatistics(const Comparison& comparison, std::size_t i, bool world, s
         if (world && (a.power == 0 || a.curve)) continue;
         text += column(a.name, kName) + column(valueText(a, world ? reference.voxelSize : 1), wide) +
                 column(valueText(b, world ? other.voxelSize : 1), wide);
-        if (!world && !verdicts.empty()) {
-            const Verdict& v = verdicts[s];
-            text += column(shortNumber(v.distance), kNumber) + column(shortNumber(v.sigma), kNumber) +
-                    column(shortNumber(v.away()), kNumber) + (v.passes() ? "pass" : "FAR");
-        }
+        if (const Verdict* v = world ? nullptr : findVerdict(verdicts, b.name))
+            text += column(shortNumber(v->distance), kNumber) + column(shortNumber(v->sigma), kNumber) +
+                    column(shortNumber(v->away()), kNumber) + (v->passes() ? "pass" : "FAR");
         text += "\n";
     }
 }
@@ -100,9 +99,9 @@ void appendDistances(const Comparison& comparison, std::size_t i, std::string& t
     row("sliced Wasserstein", &ModelDistances::Scale::wasserstein);
     row("coherence (other in reference)", &ModelDistances::Scale::coherence);
     row("completeness (reference in other)", &ModelDistances::Scale::completeness);
-    for (std::size_t v = comparison.others[i].statistics.size(); v < d.verdicts.size(); ++v)
-        text += column(d.verdicts[v].name, kName) + shortNumber(d.verdicts[v].away()) + " sigmas away, " +
-                (d.verdicts[v].passes() ? "pass" : "FAR") + "\n";
+    for (const Verdict& v : scaleVerdicts(comparison, i))
+        text += column(v.name, kName) + shortNumber(v.away()) + " sigmas away, " +
+                (v.passes() ? "pass" : "FAR") + "\n";
     text += column("LP-IoU, LP-F, mean IoU", kName) + shortNumber(d.localPatches.shareIoU) + "  " +
             shortNumber(d.localPatches.shareScore) + "  " + shortNumber(d.localPatches.meanIoU) + "\n";
     if (d.surface)
@@ -154,7 +153,10 @@ Json modelJson(const ModelStatistics& model) {
     Json statistics = Json::array();
     for (const Statistic& statistic : model.statistics) {
         Json entry{{"name", statistic.name}};
-        if (statistic.curve) {
+        if (!statistic.measured()) {
+            entry[statistic.curve ? "curve" : "voxels"] = nullptr;
+            if (!statistic.curve) entry["world"] = nullptr;
+        } else if (statistic.curve) {
             entry["curve"] = statistic.values;
         } else {
             std::vector<double> world;
@@ -232,6 +234,16 @@ std::string shortNumber(double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.4g", value);
     return text;
+}
+
+std::vector<Verdict> scaleVerdicts(const Comparison& comparison, std::size_t i) {
+    std::vector<Verdict> found;
+    const std::vector<Statistic>& statistics = comparison.others[i].statistics;
+    for (const Verdict& verdict : comparison.distances[i].verdicts)
+        if (std::none_of(statistics.begin(), statistics.end(),
+                         [&](const Statistic& statistic) { return statistic.name == verdict.name; }))
+            found.push_back(verdict);
+    return found;
 }
 
 std::string axesText(const std::array<bool, 3>& axes) {

@@ -23,6 +23,8 @@ struct ModelPictures {
 std::string comparisonPage(const Comparison& comparison, const std::vector<ModelPictures>& pictures);
 
 /// "xyz", "xy" ... or "none".
+/// The verdicts that are not of a statistic: those of patches.
+std::vector<Verdict> scaleVerdicts(const Comparison& comparison, std::size_t i);
 std::string axesText(const std::array<bool, 3>& axes);
 /// A number as people read it: four digits.
 std::string shortNumber(double value);

@@ -1,12 +1,19 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/grid/brick_field.h"
+#include "libvdbsynth/grid/dense_field.h"
 
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace vdbsynth {
+
+/// Which of the blocks over a target sample say what it is.
+enum class PatchVote {
+    Blend,  ///< all: their mean, weighted by voteWeight and by what each block weighs
+    First   ///< the first in raster order: later blocks fill only what is open [lagae2004, section 5.1]
+};
 
 /// The result of a block synthesis as what was copied from where: on a lattice of overlapping blocks over the
 /// target, the exemplar's block that each was matched to. Any grid of the exemplar is read through it.
@@ -21,6 +28,8 @@ struct PatchMap {
     std::vector<Index3>
         source;  ///< [lattice, x slowest, z fastest] minimum corner of the matched block in its exemplar
     std::vector<std::int32_t> exemplar;  ///< [lattice] number of the exemplar
+    std::vector<float> weight;           ///< [lattice] over 0, of a block's vote; empty: all alike
+    PatchVote vote = PatchVote::Blend;
 
     /// Number of blocks along each axis.
     Index3 lattice() const;
@@ -31,6 +40,11 @@ struct PatchMap {
     }
     /// First and last lattice block that covers target coordinate p of an axis.
     void covering(int axis, int p, int& first, int& last) const;
+
+    /// The lattice place of number i in the arrays.
+    Index3 place(std::size_t i) const;
+    /// Where a block begins in the target.
+    Index3 originOf(const Index3& l) const { return {origin(0, l.x), origin(1, l.y), origin(2, l.z)}; }
 
     /// Makes lattice-sized, empty source and exemplar arrays.
     void allocate();
@@ -43,17 +57,17 @@ struct PatchMap {
 float voteWeight(int block, int i);
 inline constexpr const char* kVoteKernel = "tent^2";
 
-/// The block that has the most say at a target voxel: per axis the one whose middle is nearest, the lower on
-/// a tie.
+/// The block that has the most say at a target voxel, the lower on a tie.
 Index3 strongestBlock(const PatchMap& map, const Index3& voxel);
 
 /// Reads exemplars through a map: every target sample is the mean of the samples that the blocks over it
-/// propose, weighted by voteWeight. Sums are double, in lattice order.
+/// propose, weighted by voteWeight times the block's own weight. Sums are double, in lattice order.
 /// @param exemplars  by number; boxes begin at 0
+/// @param dense      the same exemplars as dense arrays, if at hand: the same bits in a third of the time
 /// @par Cost    O(target voxels in bricks that are not constant * (block / stride)^3)
 /// @par Repeats same bits for any number of threads
 BrickField voteThroughMap(const PatchMap& map,
                           const std::vector<std::shared_ptr<const BrickField>>& exemplars,
-                          const RunContext& ctx = {});
+                          const RunContext& ctx = {}, const std::vector<DenseField>* dense = nullptr);
 
 }  // namespace vdbsynth

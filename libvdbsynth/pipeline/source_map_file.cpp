@@ -64,6 +64,24 @@ std::string exactText(double value) {
     return text;
 }
 
+constexpr const char* kFirstKernel = "first";
+
+void readWeights(const std::string& path, PatchMap& patches, const RunContext& ctx) {
+    const auto weights = openvdb::gridPtrCast<openvdb::FloatGrid>(readVdbGrid(path, "vote_weight", ctx));
+    if (!weights) throw Error(ErrorCode::BadData, path + ": grid \"vote_weight\" is not of floats");
+    patches.weight.resize(patches.source.size());
+    const auto accessor = weights->getConstAccessor();
+    for (std::size_t i = 0; i < patches.source.size(); ++i) {
+        const Index3 l = patches.place(i);
+        const float weight = accessor.getValue(openvdb::Coord(l.x, l.y, l.z));
+        if (!(weight > 0 && weight <= 1))
+            throw Error(ErrorCode::BadData, path +
+                                                ": its source map has a vote weight that is not over 0 and "
+                                                "at most 1");
+        patches.weight[i] = weight;
+    }
+}
+
 }  // namespace
 
 std::vector<GridPtr> sourceMapGrids(const SourceMap& map, const openvdb::FloatGrid& result,
@@ -83,7 +101,9 @@ std::vector<GridPtr> sourceMapGrids(const SourceMap& map, const openvdb::FloatGr
                 const Index3 source = map.patches.source[map.patches.index({a, b, c})] + shift;
                 voteAccessor.setValueOn(openvdb::Coord(a, b, c),
                                         openvdb::Vec3i(source.x, source.y, source.z));
-                weightAccessor.setValueOn(openvdb::Coord(a, b, c), 1.f);
+                const std::size_t at = map.patches.index({a, b, c});
+                weightAccessor.setValueOn(openvdb::Coord(a, b, c),
+                                          map.patches.weight.empty() ? 1.f : map.patches.weight[at]);
             }
     putText(*votes, "format", "1");
     putText(*votes, "patch", std::to_string(map.patches.block));
@@ -91,7 +111,7 @@ std::vector<GridPtr> sourceMapGrids(const SourceMap& map, const openvdb::FloatGr
     putText(*votes, "overhang",
             std::to_string(map.patches.overhang.x) + "," + std::to_string(map.patches.overhang.y) + "," +
                 std::to_string(map.patches.overhang.z));
-    putText(*votes, "kernel", kVoteKernel);
+    putText(*votes, "kernel", map.patches.vote == PatchVote::First ? kFirstKernel : kVoteKernel);
     std::string cut;
     for (bool face : map.cut) cut += face ? '1' : '0';
     putText(*votes, "cut", cut);
@@ -139,7 +159,9 @@ SourceMap readSourceMap(const std::string& path, const RunContext& ctx) {
     const auto votes = openvdb::gridPtrCast<openvdb::Vec3IGrid>(grid);
     if (!votes) throw Error(ErrorCode::BadData, path + ": grid \"vote_source\" is not a source map");
     SourceMap map;
-    if (getText(path, *votes, "kernel") != kVoteKernel || getText(path, *votes, "format") != "1")
+    const std::string kernel = getText(path, *votes, "kernel");
+    map.patches.vote = kernel == kFirstKernel ? PatchVote::First : PatchVote::Blend;
+    if ((kernel != kVoteKernel && kernel != kFirstKernel) || getText(path, *votes, "format") != "1")
         throw Error(ErrorCode::BadData,
                     path + ": its source map was written by another version of vdb_synth; make it again");
     map.patches.block = getWhole(path, *votes, "patch", 1, 65536);
@@ -182,6 +204,7 @@ SourceMap readSourceMap(const std::string& path, const RunContext& ctx) {
             throw Error(ErrorCode::BadData, path + ": its source map points outside the exemplar");
         map.patches.source[map.patches.index(l)] = source - map.exemplarBox.min;
     }
+    readWeights(path, map.patches, ctx);
     return map;
 }
 

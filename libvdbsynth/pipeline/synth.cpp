@@ -3,6 +3,7 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/grid/pyramid.h"
+#include "libvdbsynth/synth/texture_optimization.h"
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/mask.h"
 #include "libvdbsynth/vdb/redistance.h"
@@ -69,6 +70,7 @@ Plan makePlan(const LevelSet& exemplar, const SynthOptions& options) {
     plan.block.block = options.block;
     plan.block.levels = options.levels;
     plan.block.drift = options.drift;
+    plan.block.paper = options.method == SynthesisMethod::Paper;
     validateSynthesis({plan.map.exemplarBox.size()}, plan.block);
     if (plan.block.block == 0) plan.block.block = deriveBlock(plan.map.exemplarBox.size(), plan.block);
     return plan;
@@ -163,7 +165,9 @@ SynthResult synthesize(const LevelSet& exemplar, const SynthOptions& options, co
         if (plan.map.draft) mask = halvedMask(mask, ctx);
         plan.block.mask = &mask;
     }
-    BlockSynthesisResult synthesis = synthesizeBlocks({field}, plan.block, ctx);
+    BlockSynthesisResult synthesis = options.method == SynthesisMethod::Default
+                                         ? optimizeTexture({field}, plan.block, ctx)
+                                         : synthesizeBlocks({field}, plan.block, ctx);
     SynthResult result;
     plan.map.patches = std::move(synthesis.map);
     if (plan.map.draft) {

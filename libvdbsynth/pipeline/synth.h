@@ -20,6 +20,7 @@ struct SynthOptions {
     int block = 0;  ///< see BlockSynthesisOptions
     int levels = 0;
     int drift = 0;
+    SynthesisMethod method = SynthesisMethod::Default;
     bool draft = false;            ///< work at half the resolution and read the result at the full one
     GridPtr exemplarMask;          ///< sources only where this grid is active; its box is the domain unless
                                    ///< exemplarBox says another; null: everywhere

@@ -8,14 +8,32 @@
 #include "libvdbsynth/synth/synthesis_passes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace vdbsynth {
 namespace {
 
-constexpr std::uint32_t kFirstBlockPurpose = 0x66697273;
+constexpr std::uint32_t kFirstBlockPurpose = 0x66697273, kPaddingPurpose = 0x70000000;
 using Fields = std::vector<std::shared_ptr<const BrickField>>;
 using Pass = SynthesisPass;
+
+// The field with samples of 256 values only, evenly over its range [lagae2004, section 4.1].
+BrickField quantized(const BrickField& field, const RunContext& ctx) {
+    float limit = 0;
+    std::vector<float> row(std::size_t(field.box().size().z));
+    for (int x = 0; x < field.box().size().x; ++x)
+        for (int y = 0; y < field.box().size().y; ++y) {
+            field.readBox({x, y, 0}, {1, 1, int(row.size())}, row.data());
+            for (float value : row) limit = std::max(limit, std::abs(value));
+        }
+    if (limit == 0) return field;
+    return BrickField::generate(field.box(), ctx, [&](const IndexBox& brick, float* samples) {
+        field.readBox(brick.min, brick.size(), samples);
+        for (int i = 0; i < BrickField::kSamples; ++i)
+            samples[i] = (std::round((samples[i] / limit + 1) * 127.5f) / 127.5f - 1) * limit;
+    });
+}
 
 class Synthesis {
 public:
@@ -40,14 +58,36 @@ public:
         map.stride = pass.block / 2;
         map.overhang = {0, 0, 0};
         map.allocate();
-        field = coarse ? doubled(*coarse, pass.target, mContext)
-                       : BrickField(IndexBox::fromSize(pass.target), 0.f);
-        walk(pass, indices, coarse != nullptr, coarseMap, field, map, name);
+        map.vote = mOptions.paper ? PatchVote::First : PatchVote::Blend;
+        field = coarse           ? doubled(*coarse, pass.target, mContext)
+                : mOptions.paper ? drawnSamples(pass)
+                                 : BrickField(IndexBox::fromSize(pass.target), 0.f);
+        // The paper matches all samples of a block, those drawn at random too.
+        walk(pass, indices, coarse || mOptions.paper, coarseMap, field, map, name);
     }
 
     BlockSynthesisStats takeStats() const { return mStats; }
 
 private:
+    // A target whose samples are drawn from the first exemplar, each for itself.
+    BrickField drawnSamples(const Pass& pass) const {
+        const BrickField& exemplar = *pass.exemplars.front();
+        const Index3 from = exemplar.box().size();
+        const IndexBox target = IndexBox::fromSize(pass.target);
+        return BrickField::generate(target, mContext, [&](const IndexBox& brick, float* samples) {
+            for (int x = brick.min.x; x <= brick.max.x; ++x)
+                for (int y = brick.min.y; y <= brick.max.y; ++y) {
+                    const std::uint64_t row = (std::uint64_t(x) << 32) | std::uint64_t(y);
+                    for (int z = brick.min.z; z <= brick.max.z; ++z) {
+                        Random random(mContext.seed, row, kPaddingPurpose + std::uint32_t(z));
+                        *samples++ = exemplar.at({int(random.below(std::uint32_t(from.x))),
+                                                  int(random.below(std::uint32_t(from.y))),
+                                                  int(random.below(std::uint32_t(from.z)))});
+                    }
+                }
+        });
+    }
+
     struct Found {
         BlockMatch match;
         std::int32_t exemplar = 0;
@@ -103,34 +143,6 @@ private:
         return samples;
     }
 
-    // Where the source of a block may begin.
-    IndexBox candidatesFor(const Pass& pass, const BlockIndex& index, const Index3& origin) const {
-        IndexBox box = index.positions();
-        const Index3 size = index.exemplar().box().size();
-        const int n = pass.block;
-        for (int axis = 0; axis < 3; ++axis) {
-            const int at = origin[axis], length = size[axis], target = pass.target[axis];
-            int low = 0, high = length - n;
-            if (length == target) {
-                const int drift = mOptions.drift / pass.scale;
-                low = at - drift;
-                high = at + drift;
-            } else if (mOptions.border[std::size_t(axis)] == Border::Object) {
-                if (at < n)
-                    low = high = at;
-                else if (at + n > target - n)
-                    low = high = length - (target - at);
-                else {
-                    low = n;
-                    high = length - 2 * n;
-                }
-            }
-            box.min[axis] = std::max(box.min[axis], low);
-            box.max[axis] = std::min(box.max[axis], high);
-        }
-        return box;
-    }
-
     Found matchOne(const Pass& pass, const std::vector<BlockIndex>& indices, bool seeded,
                    const PatchMap* coarseMap, const BrickField& field, const PatchMap& map,
                    const Index3& l) const {
@@ -149,7 +161,7 @@ private:
             BlockQuery query;
             query.samples = samples.data();
             query.known = seeded ? nullptr : known.data();
-            query.candidates = candidatesFor(pass, indices[e], origin);
+            query.candidates = sourceBox(mOptions, pass, indices[e].exemplar().box().size(), n, origin);
             if (query.candidates.empty()) continue;
             if (!seeded && l == Index3{0, 0, 0}) {
                 if (e == 0 && drawFirst(indices[e], query, best)) return best;
@@ -251,7 +263,15 @@ BlockSynthesisResult synthesizeBlocks(const Fields& exemplars, const BlockSynthe
         for (const auto& exemplar : exemplars)
             block = std::min(block, deriveBlock(exemplar->box().size(), options));
     }
-    const std::vector<Pass> passes = planPasses(exemplars, options, block, ctx);
+    if (options.paper)
+        while (block & (block - 1)) block &= block - 1;
+    std::vector<Pass> passes = planPasses(exemplars, options, block, ctx);
+    if (options.paper)
+        for (Pass& pass : passes) {
+            while (pass.block & (pass.block - 1)) pass.block &= pass.block - 1;
+            for (auto& exemplar : pass.exemplars)
+                exemplar = std::make_shared<const BrickField>(quantized(*exemplar, ctx));
+        }
     std::vector<BrickField> masks;
     if (options.mask) {
         masks.push_back(*options.mask);

@@ -17,6 +17,13 @@ enum class Border {
             ///< those nowhere else
 };
 
+/// How a target is filled.
+enum class SynthesisMethod {
+    Default,  ///< texture optimization (texture_optimization.h)
+    Exact,    ///< blocks in raster order, each the exact best match for what is known, all of them voting
+    Paper     ///< as [lagae2004] has it: random padding, 256 values, octants copied once
+};
+
 struct BlockSynthesisOptions {
     Index3 size{
         0, 0, 0};   ///< of the target [voxels]; an axis as long as the exemplar's keeps its source coordinate
@@ -26,6 +33,7 @@ struct BlockSynthesisOptions {
     int drift =
         0;  ///< how far a source may be from its own place along an axis that does not grow [voxels], >= 0
     const BrickField* mask = nullptr;  ///< sources only from blocks where it is 1; box of the first exemplar
+    bool paper = false;  ///< synthesizeBlocks as the paper has it; the block is then a power of two
 };
 
 struct BlockSynthesisStats {
@@ -62,6 +70,11 @@ void validateSynthesis(const std::vector<Index3>& exemplars, const BlockSynthesi
 /// vote of all blocks that cover a sample (grid/patch_map.h): neighbours were matched to agree where they
 /// overlap, so their weighted mean has no seams. The first block of the first pass is drawn from ctx.seed;
 /// equal costs go to the lowest position.
+///
+/// With options.paper the way of the paper itself, for comparison: samples take 256 values in every pass, the
+/// first pass begins with samples drawn from the exemplar and matches against them where nothing is done yet,
+/// and each block fills only what is open. What stays of the paper's reconstruction is its mesh: the result
+/// is rebuilt like any other.
 ///
 /// @param exemplars  fields of distances [voxels], clamped, boxes begin at 0, at least one
 /// @throw Error InvalidOption (an option out of range), Unusable (block larger than an exemplar, object

@@ -32,6 +32,32 @@ int longestBlock(const Index3& exemplar, const BlockSynthesisOptions& options) {
     return longest / 2 * 2;
 }
 
+IndexBox sourceBox(const BlockSynthesisOptions& options, const SynthesisPass& pass, const Index3& exemplar,
+                   int side, const Index3& origin) {
+    IndexBox box;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int at = origin[axis], length = exemplar[axis], target = pass.target[axis];
+        int low = 0, high = length - side;
+        if (length == target) {
+            const int drift = options.drift / pass.scale;
+            low = std::max(low, at - drift);
+            high = std::min(high, at + drift);
+        } else if (options.border[std::size_t(axis)] == Border::Object) {
+            if (at < side)
+                low = high = at;
+            else if (at + side > target - side)
+                low = high = length - (target - at);
+            else {
+                low = side;
+                high = length - 2 * side;
+            }
+        }
+        box.min[axis] = low;
+        box.max[axis] = high;
+    }
+    return box;
+}
+
 std::vector<SynthesisPass> planPasses(const Fields& exemplars, const BlockSynthesisOptions& options,
                                       int block, const RunContext& ctx) {
     std::vector<SynthesisPass> passes{{exemplars, options.size, block, 1}};
@@ -67,6 +93,8 @@ void validateSynthesis(const std::vector<Index3>& exemplars, const BlockSynthesi
                       "from 4 to 1048576 voxels along each axis");
     requireOption(options.block == 0 || (options.block >= 4 && options.block <= 256), "block",
                   std::to_string(options.block), "a whole number from 4 to 256");
+    requireOption(!options.paper || (options.block & (options.block - 1)) == 0, "block",
+                  std::to_string(options.block), "a power of two with --method paper");
     requireOption(options.levels >= 0 && options.levels <= 8, "levels", std::to_string(options.levels),
                   "a whole number from 1 to 8");
     requireOption(options.drift >= 0, "drift", std::to_string(options.drift), "at least 0 voxels");

@@ -14,6 +14,12 @@ struct SynthesisPass {
     int scale = 1;  // voxels of the last pass in one of this
 };
 
+/// Where the source of a block or patch that begins at `origin` may begin: anywhere inside the exemplar along
+/// a growing axis (at object borders by the contract), at its own place within the drift along others.
+/// @param side  of the block [the pass's voxels]   @return may be empty
+IndexBox sourceBox(const BlockSynthesisOptions& options, const SynthesisPass& pass, const Index3& exemplar,
+                   int side, const Index3& origin);
+
 /// The passes, finest first; coarser ones end where a block would fall under four samples.
 std::vector<SynthesisPass> planPasses(const std::vector<std::shared_ptr<const BrickField>>& exemplars,
                                       const BlockSynthesisOptions& options, int block, const RunContext& ctx);

@@ -77,3 +77,36 @@ TEST_CASE("PatchMap: scaled by two it reads a finer exemplar at the same places"
     CHECK(result.at({31, 33, 38}) == Approx(exemplar->at({31, 33, 38})).margin(1e-6));
     CHECK(test::thrownBy([&] { map.scaled(2, {128, 68, 78}); }).code == int(ErrorCode::ShapeMismatch));
 }
+
+TEST_CASE("voteThroughMap: a block's own weight counts, and the first block alone where it should",
+          "[grid][oracle]") {
+    const auto exemplar = std::make_shared<const BrickField>(
+        test::fieldFrom({4, 4, 8}, [](const Index3& p) { return p.z < 4 ? 0.f : 1.f; }));
+    PatchMap map = identityMap({4, 4, 6}, 4, 2);
+    map.source[1] = {0, 0, 4};
+    map.weight = {0.01f, 1.f};
+    const double w0 = 0.01f * double(voteWeight(4, 2)), w1 = double(voteWeight(4, 0));
+    CHECK(double(voteThroughMap(map, {exemplar}).at({1, 1, 2})) == Approx(w1 / (w0 + w1)));
+    CHECK(strongestBlock(map, {0, 0, 2}) == Index3{0, 0, 1});
+    map.vote = PatchVote::First;
+    const BrickField first = voteThroughMap(map, {exemplar});
+    CHECK(first.at({1, 1, 3}) == 0.f);
+    CHECK(first.at({1, 1, 4}) == 1.f);
+    CHECK(strongestBlock(map, {0, 0, 3}) == Index3{0, 0, 0});
+    CHECK(map.place(1) == Index3{0, 0, 1});
+}
+
+TEST_CASE("voteThroughMap: dense arrays give the same bits", "[grid][determinism]") {
+    const auto exemplar = std::make_shared<const BrickField>(test::ballsField({40, 33, 37}, 3, 4.f, 9));
+    PatchMap map = identityMap({64, 50, 41}, 12, 3);
+    for (std::size_t i = 0; i < map.source.size(); ++i) {
+        Random random(4, i);
+        map.source[i] = {int(random.below(29)), int(random.below(22)), int(random.below(26))};
+        map.weight.push_back(float(random.uniform(0.01, 1)));
+    }
+    const std::vector<DenseField> dense{denseField(*exemplar)};
+    RunContext one;
+    one.threads = 1;
+    CHECK(test::samplesOf(voteThroughMap(map, {exemplar})) ==
+          test::samplesOf(voteThroughMap(map, {exemplar}, one, &dense)));
+}

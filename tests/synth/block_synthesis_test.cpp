@@ -155,3 +155,30 @@ TEST_CASE("deriveBlock: at most 16, even, half of the shortest growing axis", "[
     options.border[0] = Border::Object;
     CHECK(deriveBlock({41, 64, 10}, options) == 10);
 }
+
+TEST_CASE(
+    "synthesizeBlocks: the paper's way copies octants of powers of two, each sample from the first block",
+    "[synth][property]") {
+    const auto exemplar = shared(test::ballsField({32, 32, 32}, 7, 6.f, 14));
+    BlockSynthesisOptions options = optionsFor({56, 48, 40}, 8, 2);
+    options.paper = true;
+    const BlockSynthesisResult result = synthesizeBlocks({exemplar}, options);
+    CHECK(result.map.vote == PatchVote::First);
+    CHECK(result.map.block == 8);
+    for (const Index3& p : {Index3{0, 0, 0}, Index3{13, 20, 31}, Index3{55, 47, 39}}) {
+        const Index3 l = strongestBlock(result.map, p);
+        for (int axis = 0; axis < 3; ++axis) {
+            // No earlier block covers it.
+            CHECK(result.map.origin(axis, l[axis]) + 8 > p[axis]);
+            CHECK((l[axis] == 0 || result.map.origin(axis, l[axis] - 1) + 8 <= p[axis]));
+        }
+        CHECK(result.field.at(p) ==
+              exemplar->at(result.map.source[result.map.index(l)] + p - result.map.originOf(l)));
+    }
+    options.block = 12;
+    CHECK(test::contains(test::thrownBy([&] { synthesizeBlocks({exemplar}, options); }).message,
+                         "a power of two"));
+    options.block = 0;
+    options.size = {26, 50, 50};
+    CHECK(synthesizeBlocks({shared(test::ballsField({26, 26, 26}, 7, 6.f, 14))}, options).map.block == 8);
+}

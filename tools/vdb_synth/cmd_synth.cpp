@@ -72,6 +72,16 @@ void parseBorder(const Arguments& arguments, SynthOptions& options) {
     }
 }
 
+SynthesisMethod parseMethod(const Arguments& arguments) {
+    if (!arguments.has("method")) return SynthesisMethod::Default;
+    const std::string text = arguments.text("method");
+    requireOption(text == "default" || text == "exact" || text == "paper", "method", text,
+                  "default, exact or paper");
+    return text == "default" ? SynthesisMethod::Default
+           : text == "exact" ? SynthesisMethod::Exact
+                             : SynthesisMethod::Paper;
+}
+
 SynthOptions parseOptions(const Arguments& arguments) {
     SynthOptions options;
     parseSize(arguments, options);
@@ -81,6 +91,7 @@ SynthOptions parseOptions(const Arguments& arguments) {
     options.levels = arguments.whole("levels", 0, 1, 8);
     options.drift = arguments.whole("drift", 0, 0, 1 << 20);
     options.draft = arguments.has("draft");
+    options.method = parseMethod(arguments);
     options.halfWidth = float(arguments.real("half-width", 3, 1.5, 100));
     return options;
 }
@@ -118,9 +129,11 @@ void synth(Run& run) {
     run.count("block", result.stats.block);
     run.count("levels", result.stats.levels);
     run.count("matches", result.stats.matches);
-    run.count("bounds_computed", result.stats.nodes);
-    run.count("exact_costs_computed", result.stats.exact);
-    run.count("index_bytes", result.stats.indexBytes);
+    run.count("costs_computed", result.stats.exact);
+    if (options.method != SynthesisMethod::Default) {
+        run.count("bounds_computed", result.stats.nodes);
+        run.count("index_bytes", result.stats.indexBytes);
+    }
     run.count("mean_match_cost", result.stats.meanCost);
     run.describe(result.model);
     run.finish();
@@ -135,7 +148,10 @@ const Command kSynth{
     "vdb_synth synth grid.vdb -o more.vdb --size 2x,2x,1x",
     {{"size", "X,Y,Z", "size of the result: voxels, or multiples of the exemplar's domain such as 2x,2x,1x"},
      {"block", "N", "side of the matched blocks (voxels), 4 to 256; default from the exemplar, at most 16"},
-     {"levels", "N", "number of passes, coarse to fine; default 3 or as many as fit"},
+     {"levels", "N",
+      "number of passes, coarse to fine; default 3, more for larger exemplars, or as many as fit"},
+     {"method", "NAME",
+      "default; exact: blocks in raster order, each the exact best match; paper: as published in 2004"},
      {"draft", "", "a quick look: blocks are searched at half the resolution, distances are approximate"},
      {"border", "KIND",
       "cut or object, once or for each growing axis; default cut where a domain is recorded"},

@@ -1,0 +1,287 @@
+#include "libvdbsynth/synth/patch_search.h"
+
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/base/random.h"
+#include "libvdbsynth/grid/pyramid.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace vdbsynth {
+namespace {
+
+constexpr std::uint32_t kDrawPurpose = 0x70730000;
+constexpr float kCostFloor = 0.02f;   // [voxels^2] added to costs before they are compared
+constexpr float kOverusePenalty = 2;  // share added for every time more than expected
+constexpr float kAgreement = 0.01f;   // [voxels^2] cost of patches that agree
+constexpr std::size_t kPatchesAChunk = 64;
+
+// How often each part of each exemplar is a source, in cells of a stride.
+class Uses {
+public:
+    Uses(const PatchLevel& level, const PatchMap& map, const std::vector<std::uint8_t>& varied)
+        : mHalf(map.block / 2), mSide(map.stride) {
+        for (const DenseField& exemplar : level.exemplars) {
+            Cells cells;
+            for (int axis = 0; axis < 3; ++axis) cells.size[axis] = exemplar.size[axis] / mSide + 1;
+            cells.count.assign(
+                std::size_t(cells.size.x) * std::size_t(cells.size.y) * std::size_t(cells.size.z), 0);
+            mCells.push_back(std::move(cells));
+        }
+        double all = 0;
+        for (std::size_t i = 0; i < map.source.size(); ++i)
+            if (varied[i]) {
+                Cells& cells = mCells[std::size_t(map.exemplar[i])];
+                cells.count[cellOf(cells, map.source[i])] += 1;
+                all += 1;
+            }
+        mExpected = float(std::max(0.5, all / std::max(1.0, level.surfacePlaces)));
+    }
+
+    // What a source's cost is multiplied by.
+    float penalty(std::size_t exemplar, const Index3& source) const {
+        const Cells& cells = mCells[exemplar];
+        return 1 + kOverusePenalty * std::max(0.f, cells.count[cellOf(cells, source)] / mExpected - 1);
+    }
+
+private:
+    struct Cells {
+        Index3 size;
+        std::vector<float> count;
+    };
+    std::size_t cellOf(const Cells& cells, const Index3& source) const {
+        return (std::size_t((source.x + mHalf) / mSide) * std::size_t(cells.size.y) +
+                std::size_t((source.y + mHalf) / mSide)) *
+                   std::size_t(cells.size.z) +
+               std::size_t((source.z + mHalf) / mSide);
+    }
+
+    int mHalf, mSide;
+    std::vector<Cells> mCells;
+    float mExpected = 1;
+};
+
+struct Source {
+    Index3 place;
+    std::int32_t exemplar = 0;
+    float cost = 0;                                           // mean squared difference
+    float dearness = std::numeric_limits<float>::infinity();  // what is compared
+};
+
+// Looks for the best source of one patch after another.
+class PatchSearch {
+public:
+    PatchSearch(const PatchLevel& level, const PatchMap& map, const Uses& uses)
+        : mLevel(level),
+          mMap(map),
+          mUses(uses),
+          mSamples(std::size_t(map.block) * std::size_t(map.block) * std::size_t(map.block)) {}
+
+    std::uint64_t compared() const { return mCompared; }
+
+    Source search(const BrickField& field, std::size_t i, int round, std::uint64_t seed) {
+        mPlace = mMap.place(i);
+        mOrigin = mMap.originOf(mPlace);
+        field.readBox(mOrigin, {mMap.block, mMap.block, mMap.block}, mSamples.data());
+        mBest = {};
+        look(mMap.exemplar[i], mMap.source[i]);
+        lookAtNeighbours(round % 3 == 2 ? 2 : 1);
+        lookAround(i, round, seed);
+        // Nothing eligible was looked at: a mask with little left. The first place that is.
+        if (!std::isfinite(mBest.dearness)) lookEverywhere();
+        return mBest;
+    }
+
+private:
+    bool eligible(std::int32_t exemplar, const Index3& place) const {
+        return mLevel.maskMeans.empty() || exemplar != 0 || mLevel.maskMeans.front().inside(place) == 1.f;
+    }
+
+    void look(std::int32_t exemplar, const Index3& place) {
+        const std::size_t e = std::size_t(exemplar);
+        if (!sourcesFor(mLevel, mMap, e, mOrigin).contains(place) || !eligible(exemplar, place)) return;
+        const float factor = mUses.penalty(e, place);
+        const float cost = patchDifference(mSamples.data(), mLevel.exemplars[e], place, mMap.block,
+                                           mBest.dearness / factor - kCostFloor);
+        ++mCompared;
+        const float dearness = (cost + kCostFloor) * factor;
+        if (dearness < mBest.dearness) mBest = {place, exemplar, cost, dearness};
+    }
+
+    void lookAtNeighbours(int step) {
+        const Index3 lattice = mMap.lattice();
+        for (int axis = 0; axis < 3; ++axis)
+            for (const int side : {-step, step}) {
+                Index3 other = mPlace;
+                other[axis] += side;
+                if (other[axis] < 0 || other[axis] >= lattice[axis]) continue;
+                const std::size_t k = mMap.index(other);
+                look(mMap.exemplar[k], mMap.source[k] + mOrigin - mMap.originOf(other));
+            }
+    }
+
+    // Places drawn from boxes around the best, each half as wide as the one before.
+    void lookAround(std::size_t i, int round, std::uint64_t seed) {
+        Random random(seed, i, kDrawPurpose + std::uint32_t(round));
+        const std::uint32_t count = std::uint32_t(mLevel.exemplars.size());
+        std::int32_t exemplar = count > 1 ? std::int32_t(random.below(count)) : 0;
+        const Index3 size = sourcesFor(mLevel, mMap, std::size_t(exemplar), mOrigin).size();
+        for (int radius = std::max({size.x, size.y, size.z}); radius >= 1; radius /= 2) {
+            const IndexBox box = sourcesFor(mLevel, mMap, std::size_t(exemplar), mOrigin);
+            if (box.empty()) return;
+            const Index3 centre = mBest.exemplar == exemplar ? mBest.place : box.min;
+            Index3 place;
+            for (int axis = 0; axis < 3; ++axis) {
+                const int low = std::max(box.min[axis], centre[axis] - radius),
+                          high = std::max(low, std::min(box.max[axis], centre[axis] + radius));
+                place[axis] = low + int(random.below(std::uint32_t(high - low + 1)));
+            }
+            look(exemplar, place);
+            exemplar = mBest.exemplar;
+        }
+    }
+
+    void lookEverywhere() {
+        for (std::size_t e = 0; e < mLevel.exemplars.size(); ++e) {
+            const IndexBox box = sourcesFor(mLevel, mMap, e, mOrigin);
+            for (int x = box.min.x; x <= box.max.x; ++x)
+                for (int y = box.min.y; y <= box.max.y; ++y)
+                    for (int z = box.min.z; z <= box.max.z; ++z) look(std::int32_t(e), {x, y, z});
+        }
+    }
+
+    const PatchLevel& mLevel;
+    const PatchMap& mMap;
+    const Uses& mUses;
+    std::vector<float> mSamples;
+    Index3 mPlace, mOrigin;
+    Source mBest;
+    std::uint64_t mCompared = 0;
+};
+
+// 1 where a patch's samples in the field have more than one value.
+std::vector<std::uint8_t> variedPatches(const PatchMap& map, const BrickField& field, const RunContext& ctx) {
+    std::vector<std::uint8_t> varied(map.source.size());
+    parallelFor(ctx, varied.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        float value;
+        for (std::size_t i = begin; i < end; ++i)
+            varied[i] = !field.constantIn(IndexBox::cube(map.originOf(map.place(i)), map.block), value);
+    });
+    return varied;
+}
+
+// True where a patch and its source are one and the same value: nothing is nearer.
+bool settled(const PatchLevel& level, const PatchMap& map, const BrickField& field, std::size_t i) {
+    float own, source;
+    return field.constantIn(IndexBox::cube(map.originOf(map.place(i)), map.block), own) &&
+           level.pass->exemplars[std::size_t(map.exemplar[i])]->constantIn(
+               IndexBox::cube(map.source[i], map.block), source) &&
+           own == source;
+}
+
+// (agreement / (cost + agreement))^2.5, by a square root, which is the same on every processor.
+float weightFor(float cost) {
+    const float ratio = kAgreement / (cost + kAgreement);
+    return ratio * ratio * std::sqrt(ratio);
+}
+
+}  // namespace
+
+__attribute__((target_clones("avx2", "default"))) float patchDifference(const float* patch,
+                                                                        const DenseField& in,
+                                                                        const Index3& corner, int n,
+                                                                        float giveUp) {
+    const float samples = float(n) * float(n) * float(n), limit = giveUp * samples;
+    float total = 0;
+    for (int x = 0; x < n; ++x) {
+        float lanes[8] = {};
+        for (int y = 0; y < n; ++y, patch += n) {
+            const float* row = in.row(corner.x + x, corner.y + y, corner.z);
+            int z = 0;
+            for (; z + 8 <= n; z += 8)
+                for (int k = 0; k < 8; ++k)
+                    lanes[k] += (patch[z + k] - row[z + k]) * (patch[z + k] - row[z + k]);
+            for (; z + 4 <= n; z += 4)
+                for (int k = 0; k < 4; ++k)
+                    lanes[k] += (patch[z + k] - row[z + k]) * (patch[z + k] - row[z + k]);
+            for (; z < n; ++z) lanes[z & 7] += (patch[z] - row[z]) * (patch[z] - row[z]);
+        }
+        total +=
+            ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3])) + ((lanes[4] + lanes[5]) + (lanes[6] + lanes[7]));
+        if (total > limit) break;
+    }
+    return total / samples;
+}
+
+PatchLevel patchLevel(const SynthesisPass& pass, const BlockSynthesisOptions& options, const PatchMap& map,
+                      const BrickField* mask, const RunContext& ctx) {
+    PatchLevel level;
+    level.pass = &pass;
+    level.options = &options;
+    double varied = 0;
+    for (const auto& exemplar : pass.exemplars) {
+        level.exemplars.push_back(denseField(*exemplar));
+        const Index3 size = exemplar->box().size();
+        float value;
+        for (int x = 0; x + map.block <= size.x; x += map.stride)
+            for (int y = 0; y + map.block <= size.y; y += map.stride)
+                for (int z = 0; z + map.block <= size.z; z += map.stride)
+                    varied += !exemplar->constantIn(IndexBox::cube({x, y, z}, map.block), value);
+    }
+    level.surfacePlaces = std::max(1.0, varied);
+    if (mask) level.maskMeans.push_back(slidingMean(*mask, map.block, ctx));
+    return level;
+}
+
+IndexBox sourcesFor(const PatchLevel& level, const PatchMap& map, std::size_t e, const Index3& origin) {
+    return sourceBox(*level.options, *level.pass, level.exemplars[e].size, map.block, origin);
+}
+
+void liftSources(const PatchLevel& level, const PatchMap& coarse, int factor, PatchMap& map) {
+    for (std::size_t i = 0; i < map.source.size(); ++i) {
+        const Index3 origin = map.originOf(map.place(i));
+        Index3 middle;
+        for (int axis = 0; axis < 3; ++axis)
+            middle[axis] = std::min((origin[axis] + map.block / 2) / factor, coarse.target[axis] - 1);
+        const Index3 strongest = strongestBlock(coarse, middle);
+        const std::size_t from = coarse.index(strongest);
+        map.exemplar[i] = coarse.exemplar[from];
+        const IndexBox box = sourcesFor(level, map, std::size_t(map.exemplar[i]), origin);
+        const Index3 source = origin + (coarse.source[from] - coarse.originOf(strongest)) * factor;
+        for (int axis = 0; axis < 3; ++axis)
+            map.source[i][axis] =
+                std::clamp(source[axis], box.min[axis], std::max(box.min[axis], box.max[axis]));
+    }
+}
+
+RoundCounts improveSources(const PatchLevel& level, const BrickField& field, int round, PatchMap& map,
+                           const RunContext& ctx) {
+    const std::size_t count = map.source.size();
+    const Uses uses(level, map, variedPatches(map, field, ctx));
+    std::vector<Source> found(count);
+    std::vector<std::uint64_t> compared((count + kPatchesAChunk - 1) / kPatchesAChunk, 0);
+    parallelFor(ctx, count, kPatchesAChunk, [&](std::size_t begin, std::size_t end) {
+        PatchSearch search(level, map, uses);
+        for (std::size_t i = begin; i < end; ++i)
+            if (settled(level, map, field, i))
+                found[i] = {map.source[i], map.exemplar[i], 0, 0};
+            else
+                found[i] = search.search(field, i, round, ctx.seed);
+        compared[begin / kPatchesAChunk] = search.compared();
+    });
+    RoundCounts counts;
+    map.weight.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        map.source[i] = found[i].place;
+        map.exemplar[i] = found[i].exemplar;
+        map.weight[i] = weightFor(found[i].cost);
+        counts.cost += double(found[i].cost) / double(count);
+    }
+    counts.patches = count;
+    for (std::uint64_t n : compared) counts.compared += n;
+    return counts;
+}
+
+}  // namespace vdbsynth

@@ -1,0 +1,48 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/grid/dense_field.h"
+#include "libvdbsynth/grid/patch_map.h"
+#include "libvdbsynth/synth/synthesis_passes.h"
+
+#include <memory>
+#include <vector>
+
+namespace vdbsynth {
+
+/// What all rounds of one pass of a texture optimization read.
+struct PatchLevel {
+    const SynthesisPass* pass = nullptr;
+    const BlockSynthesisOptions* options = nullptr;
+    std::vector<DenseField> exemplars;  ///< those of the pass
+    std::vector<BrickField> maskMeans;  ///< mean of the mask over each patch of the first; empty: no mask
+    double surfacePlaces = 1;           ///< places, a stride apart, whose patches hold a surface
+};
+
+/// @param mask  at the pass's scale; null: none
+PatchLevel patchLevel(const SynthesisPass& pass, const BlockSynthesisOptions& options, const PatchMap& map,
+                      const BrickField* mask, const RunContext& ctx);
+
+/// Where the source of the patch at an origin may begin, in exemplar number e.
+IndexBox sourcesFor(const PatchLevel& level, const PatchMap& map, std::size_t e, const Index3& origin);
+
+/// Gives every patch of a map on a lattice of its own the source that another map has where the patch's
+/// middle is, `factor` times the scale apart, or the nearest that it may have.
+void liftSources(const PatchLevel& level, const PatchMap& coarse, int factor, PatchMap& map);
+
+/// The mean squared difference of a patch of side n [n x n x n] and the one at a corner of a field. Once it
+/// is sure to exceed `giveUp` some larger value may come back. Eight sums side by side: the same bits on
+/// every processor.
+float patchDifference(const float* patch, const DenseField& in, const Index3& corner, int n, float giveUp);
+
+struct RoundCounts {
+    std::uint64_t patches = 0, compared = 0;
+    double cost = 0;  ///< [voxels^2] mean over all patches
+};
+
+/// One round: every patch keeps its source or takes a better one, and its weight.
+/// @param field  what the map now votes
+/// @param round  number, for the draws and the length of the neighbours' step
+RoundCounts improveSources(const PatchLevel& level, const BrickField& field, int round, PatchMap& map,
+                           const RunContext& ctx);
+
+}  // namespace vdbsynth

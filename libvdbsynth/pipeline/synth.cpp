@@ -45,6 +45,36 @@ Index3 targetSize(const Index3& domain, const SynthOptions& options) {
     return size;
 }
 
+// A target that tiles is worked on with more than a block of its other end on either side.
+void addRoomToTile(Plan& plan, const SynthOptions& options) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (plan.block.border[std::size_t(axis)] != Border::Tile) continue;
+        if (options.method != SynthesisMethod::Default || options.draft)
+            throw Error(ErrorCode::InvalidOption, "--border tile: needs --method default and no --draft");
+        // Two blocks, in whole sixteens, so that coarser passes come out even.
+        const int around = (2 * (options.block > 0 ? options.block : 16) + 15) / 16 * 16;
+        plan.block.around[axis] = around;
+        plan.map.targetBox.min[axis] -= around;
+        plan.map.targetBox.max[axis] += around;
+    }
+}
+
+// The part of a voted field that the result is made of: cut axes end with the domain.
+BrickField clipped(const SourceMap& map, BrickField field, const RunContext& ctx) {
+    IndexBox box = map.targetBox;
+    for (int axis = 0; axis < 3; ++axis)
+        if (map.cut[std::size_t(2 * axis)]) {
+            box.min[axis] = map.targetDomain.min[axis];
+            box.max[axis] = map.targetDomain.max[axis];
+        }
+    if (box == map.targetBox) return field;
+    const Index3 shift = box.min - map.targetBox.min;
+    return BrickField::generate(IndexBox::fromSize(box.size()), ctx,
+                                [&](const IndexBox& brick, float* samples) {
+                                    field.readBox(brick.min + shift, brick.size(), samples);
+                                });
+}
+
 Plan makePlan(const LevelSet& exemplar, const SynthOptions& options) {
     Plan plan;
     const IndexBox domain = options.exemplarBox    ? *options.exemplarBox
@@ -59,13 +89,15 @@ Plan makePlan(const LevelSet& exemplar, const SynthOptions& options) {
         const Border border =
             options.border[std::size_t(axis)].value_or(recorded ? Border::Cut : Border::Object);
         plan.block.border[std::size_t(axis)] = border;
-        plan.map.cut[std::size_t(2 * axis)] = plan.map.cut[std::size_t(2 * axis + 1)] = border == Border::Cut;
-        if (border == Border::Cut) continue;
+        plan.map.cut[std::size_t(2 * axis)] = plan.map.cut[std::size_t(2 * axis + 1)] =
+            border != Border::Object;
+        if (border != Border::Object) continue;
         for (IndexBox* box : {&plan.map.exemplarBox, &plan.map.targetBox}) {
             box->min[axis] -= kObjectMargin;
             box->max[axis] += kObjectMargin;
         }
     }
+    addRoomToTile(plan, options);
     plan.block.size = plan.map.targetBox.size();
     plan.block.block = options.block;
     plan.block.levels = options.levels;
@@ -129,10 +161,13 @@ std::shared_ptr<const BrickField> gatherForVote(const SourceMap& map, const Leve
 }
 
 // The voted field as a level set.
-LevelSet finish(const SourceMap& map, const BrickField& field, const openvdb::FloatGrid& like,
+LevelSet finish(const SourceMap& map, BrickField voted, const openvdb::FloatGrid& like,
                 const RunContext& ctx) {
     LevelSet model;
-    const Index3 corner = map.targetBox.min;
+    const BrickField field = clipped(map, std::move(voted), ctx);
+    Index3 corner = map.targetBox.min;
+    for (int axis = 0; axis < 3; ++axis)
+        if (map.cut[std::size_t(2 * axis)]) corner[axis] = map.targetDomain.min[axis];
     model.grid = map.draft && map.halfWidth == kHalfWidth
                      ? closeAndNormalize(field, corner, map.cut, like, "the result", ctx)
                      : closeAndRebuild(field, corner, map.cut, map.halfWidth, like, "the result", ctx);

@@ -257,6 +257,9 @@ BlockSynthesisResult synthesizeBlocks(const Fields& exemplars, const BlockSynthe
     std::vector<Index3> sizes;
     for (const auto& exemplar : exemplars) sizes.push_back(exemplar->box().size());
     validateSynthesis(sizes, options);
+    for (Border border : options.border)
+        if (border == Border::Tile)
+            throw Error(ErrorCode::InvalidOption, "--border tile: needs --method default");
     int block = options.block;
     if (block == 0) {
         block = 256;

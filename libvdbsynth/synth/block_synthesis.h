@@ -12,9 +12,10 @@ namespace vdbsynth {
 
 /// What happens at the two faces of the target along an axis that grows.
 enum class Border {
-    Cut,    ///< the texture goes on beyond the face; sources may come from anywhere
-    Object  ///< within a block of a face only sources at the same distance from the same exemplar face, and
-            ///< those nowhere else
+    Cut,     ///< the texture goes on beyond the face; sources may come from anywhere
+    Object,  ///< within a block of a face only sources at the same distance from the same exemplar face, and
+             ///< those nowhere else
+    Tile     ///< the target goes on at one face as it begins at the other; optimizeTexture only
 };
 
 /// How a target is filled.
@@ -30,9 +31,17 @@ struct BlockSynthesisOptions {
     int block = 0;  ///< N of the last pass [voxels], 4..256; 0: derived, see deriveBlock
     int levels = 0;  ///< number of passes, 1..8; 0: as many as useful, at most 3
     std::array<Border, 3> border{Border::Cut, Border::Cut, Border::Cut};
+    /// Along axes that tile: voxels at both ends of the target that repeat the other end, at least a block.
+    /// What tiles is what lies between.
+    Index3 around{0, 0, 0};
     int drift =
         0;  ///< how far a source may be from its own place along an axis that does not grow [voxels], >= 0
     const BrickField* mask = nullptr;  ///< sources only from blocks where it is 1; box of the first exemplar
+    /// A target of which a part is known (optimizeTexture): its samples, and 1 where they are open; boxes of
+    /// the target. Sources may then come from anywhere along every axis. Both or none.
+    const BrickField* known = nullptr;
+    const BrickField* open = nullptr;
+    bool guessed = false;  ///< what `known` has where it is open is a guess to begin with, not nothing
     bool paper = false;  ///< synthesizeBlocks as the paper has it; the block is then a power of two
 };
 

@@ -144,6 +144,8 @@ private:
     }
 
     void lookEverywhere() {
+        for (const Index3& place : mLevel.fallbacks) look(0, place);
+        if (std::isfinite(mBest.dearness)) return;
         for (std::size_t e = 0; e < mLevel.exemplars.size(); ++e) {
             const IndexBox box = sourcesFor(mLevel, mMap, e, mOrigin);
             for (int x = box.min.x; x <= box.max.x; ++x)
@@ -187,6 +189,41 @@ float weightFor(float cost) {
     return ratio * ratio * std::sqrt(ratio);
 }
 
+// Some of the places whose patches lie inside a mask, evenly through all of them.
+std::vector<Index3> placesInside(const BrickField& maskMeans, int side) {
+    constexpr std::size_t kMost = 64;
+    std::vector<Index3> all, some;
+    const Index3 last = maskMeans.box().max - Index3{side - 1, side - 1, side - 1};
+    for (int x = 0; x <= last.x; ++x)
+        for (int y = 0; y <= last.y; ++y)
+            for (int z = 0; z <= last.z; ++z)
+                if (maskMeans.inside({x, y, z}) == 1.f) all.push_back({x, y, z});
+    const std::size_t count = std::min(kMost, all.size());
+    for (std::size_t i = 0; i < count; ++i) some.push_back(all[i * all.size() / count]);
+    return some;
+}
+
+// Along axes that tile, a patch beyond the period is the one a period before or after.
+std::vector<std::size_t> repeatsOf(const SynthesisPass& pass, const BlockSynthesisOptions& options,
+                                   const PatchMap& map) {
+    std::vector<std::size_t> repeats;
+    if (std::count(options.border.begin(), options.border.end(), Border::Tile) == 0) return repeats;
+    repeats.resize(map.source.size());
+    for (std::size_t i = 0; i < repeats.size(); ++i) {
+        Index3 l = map.place(i);
+        for (int axis = 0; axis < 3; ++axis) {
+            if (options.border[std::size_t(axis)] != Border::Tile) continue;
+            const int around = options.around[axis] / pass.scale, period = pass.target[axis] - 2 * around;
+            const int origin = map.origin(axis, l[axis]);
+            const int inside = (origin - around + period * 4) % period + around;
+            // The last patch may end with the target off the lattice; it lies beyond what tiles.
+            if (origin % map.stride == 0) l[axis] = inside / map.stride;
+        }
+        repeats[i] = map.index(l);
+    }
+    return repeats;
+}
+
 }  // namespace
 
 __attribute__((target_clones("avx2", "default"))) float patchDifference(const float* patch,
@@ -216,7 +253,7 @@ __attribute__((target_clones("avx2", "default"))) float patchDifference(const fl
 }
 
 PatchLevel patchLevel(const SynthesisPass& pass, const BlockSynthesisOptions& options, const PatchMap& map,
-                      const BrickField* mask, const RunContext& ctx) {
+                      const BrickField* mask, const BrickField* open, const RunContext& ctx) {
     PatchLevel level;
     level.pass = &pass;
     level.options = &options;
@@ -231,7 +268,16 @@ PatchLevel patchLevel(const SynthesisPass& pass, const BlockSynthesisOptions& op
                     varied += !exemplar->constantIn(IndexBox::cube({x, y, z}, map.block), value);
     }
     level.surfacePlaces = std::max(1.0, varied);
-    if (mask) level.maskMeans.push_back(slidingMean(*mask, map.block, ctx));
+    level.repeats = repeatsOf(pass, options, map);
+    for (std::size_t i = 0; open && i < map.source.size(); ++i) {
+        float value;
+        level.fixed.push_back(
+            open->constantIn(IndexBox::cube(map.originOf(map.place(i)), map.block), value) && value == 0.f);
+    }
+    if (mask) {
+        level.maskMeans.push_back(slidingMean(*mask, map.block, ctx));
+        level.fallbacks = placesInside(level.maskMeans.front(), map.block);
+    }
     return level;
 }
 
@@ -256,16 +302,27 @@ void liftSources(const PatchLevel& level, const PatchMap& coarse, int factor, Pa
     }
 }
 
+void copyRepeats(const PatchLevel& level, PatchMap& map) {
+    for (std::size_t i = 0; i < level.repeats.size(); ++i) {
+        const std::size_t from = level.repeats[i];
+        map.source[i] = map.source[from];
+        map.exemplar[i] = map.exemplar[from];
+        if (!map.weight.empty()) map.weight[i] = map.weight[from];
+    }
+}
+
 RoundCounts improveSources(const PatchLevel& level, const BrickField& field, int round, PatchMap& map,
                            const RunContext& ctx) {
     const std::size_t count = map.source.size();
-    const Uses uses(level, map, variedPatches(map, field, ctx));
+    std::vector<std::uint8_t> counted = variedPatches(map, field, ctx);
+    for (std::size_t i = 0; i < count; ++i) counted[i] = counted[i] && !level.keeps(i);
+    const Uses uses(level, map, counted);
     std::vector<Source> found(count);
     std::vector<std::uint64_t> compared((count + kPatchesAChunk - 1) / kPatchesAChunk, 0);
     parallelFor(ctx, count, kPatchesAChunk, [&](std::size_t begin, std::size_t end) {
         PatchSearch search(level, map, uses);
         for (std::size_t i = begin; i < end; ++i)
-            if (settled(level, map, field, i))
+            if (level.keeps(i) || settled(level, map, field, i))
                 found[i] = {map.source[i], map.exemplar[i], 0, 0};
             else
                 found[i] = search.search(field, i, round, ctx.seed);
@@ -279,6 +336,7 @@ RoundCounts improveSources(const PatchLevel& level, const BrickField& field, int
         map.weight[i] = weightFor(found[i].cost);
         counts.cost += double(found[i].cost) / double(count);
     }
+    copyRepeats(level, map);
     counts.patches = count;
     for (std::uint64_t n : compared) counts.compared += n;
     return counts;

@@ -23,7 +23,7 @@ Index3 halfOf(const Index3& n) {
 int longestBlock(const Index3& exemplar, const BlockSynthesisOptions& options) {
     int longest = 256;
     for (int axis = 0; axis < 3; ++axis) {
-        const bool grows = exemplar[axis] != options.size[axis];
+        const bool grows = options.open || exemplar[axis] != options.size[axis];
         longest =
             std::min(longest, !grows                                                ? exemplar[axis]
                               : options.border[std::size_t(axis)] == Border::Object ? exemplar[axis] / 4
@@ -38,7 +38,9 @@ IndexBox sourceBox(const BlockSynthesisOptions& options, const SynthesisPass& pa
     for (int axis = 0; axis < 3; ++axis) {
         const int at = origin[axis], length = exemplar[axis], target = pass.target[axis];
         int low = 0, high = length - side;
-        if (length == target) {
+        if (options.open) {
+            // anywhere
+        } else if (length == target) {
             const int drift = options.drift / pass.scale;
             low = std::max(low, at - drift);
             high = std::min(high, at + drift);
@@ -58,11 +60,24 @@ IndexBox sourceBox(const BlockSynthesisOptions& options, const SynthesisPass& pa
     return box;
 }
 
+namespace {
+
+// A period that is no whole number of samples would not come out even.
+bool halvesWhatTiles(const BlockSynthesisOptions& options, int scale) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (options.border[std::size_t(axis)] == Border::Tile &&
+            (options.size[axis] % (2 * scale) || options.around[axis] % (2 * scale)))
+            return false;
+    return true;
+}
+
+}  // namespace
+
 std::vector<SynthesisPass> planPasses(const Fields& exemplars, const BlockSynthesisOptions& options,
                                       int block, const RunContext& ctx) {
     std::vector<SynthesisPass> passes{{exemplars, options.size, block, 1}};
     const int levels = options.levels > 0 ? options.levels : 3;
-    while (int(passes.size()) < levels) {
+    while (int(passes.size()) < levels && halvesWhatTiles(options, passes.back().scale)) {
         SynthesisPass coarse;
         coarse.target = halfOf(passes.back().target);
         coarse.scale = passes.back().scale * 2;
@@ -101,7 +116,7 @@ void validateSynthesis(const std::vector<Index3>& exemplars, const BlockSynthesi
     for (const Index3& exemplar : exemplars)
         for (int axis = 0; axis < 3; ++axis) {
             const int length = exemplar[axis];
-            if (options.size[axis] < length)
+            if (!options.open && options.size[axis] < length)
                 throw Error(ErrorCode::Unusable, "--size " + size +
                                                      ": smaller than the exemplar's domain along " +
                                                      char('x' + axis) + " (" + std::to_string(length) +

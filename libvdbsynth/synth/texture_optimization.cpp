@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/grid/pyramid.h"
+#include "libvdbsynth/synth/open_fill.h"
 #include "libvdbsynth/synth/patch_search.h"
 #include "libvdbsynth/synth/synthesis_passes.h"
 
@@ -34,11 +35,20 @@ int levelsFor(const Fields& exemplars, const BlockSynthesisOptions& options) {
     return std::max(levels, 3);
 }
 
-PatchMap emptyMap(const Pass& pass, int block) {
+PatchMap emptyMap(const Pass& pass, int block, const BlockSynthesisOptions& options) {
     PatchMap map;
     map.target = pass.target;
     map.block = block;
     map.stride = std::max(1, block / kOverlap);
+    // Patches that repeat each other lie a period apart, so the stride divides it.
+    const auto divides = [&] {
+        for (int axis = 0; axis < 3; ++axis)
+            if (options.border[std::size_t(axis)] == Border::Tile &&
+                (pass.target[axis] - 2 * (options.around[axis] / pass.scale)) % map.stride)
+                return false;
+        return true;
+    };
+    while (!divides()) --map.stride;
     map.allocate();
     return map;
 }
@@ -49,11 +59,163 @@ PatchMap firstArrangement(const Pass& pass, const BlockSynthesisOptions& options
     BlockSynthesisOptions first = options;
     first.size = pass.target;
     first.levels = 1;
+    for (Border& border : first.border)
+        if (border == Border::Tile) border = Border::Cut;
     first.block = pass.block;
     first.drift = options.drift / pass.scale;
     first.mask = mask;
     return synthesizeBlocks(pass.exemplars, first, ctx).map;
 }
+
+// What each pass has of a mask and of a target that is known in part, finest first.
+struct Given {
+    std::vector<BrickField> masks, known, open;
+    const BrickField* mask(std::size_t p) const { return masks.empty() ? nullptr : &masks[p]; }
+    const BrickField* openAt(std::size_t p) const { return open.empty() ? nullptr : &open[p]; }
+};
+
+BrickField exchanged(const BrickField& field, const RunContext& ctx) {
+    return BrickField::generate(field.box(), ctx, [&](const IndexBox& brick, float* samples) {
+        field.readBox(brick.min, brick.size(), samples);
+        for (int i = 0; i < BrickField::kSamples; ++i) samples[i] = 1 - samples[i];
+    });
+}
+
+Given givenFor(const BlockSynthesisOptions& options, std::size_t passes, const RunContext& ctx) {
+    Given given;
+    if (options.mask) given.masks.push_back(*options.mask);
+    while (options.mask && given.masks.size() < passes)
+        given.masks.push_back(halvedMask(given.masks.back(), ctx));
+    if (!options.open) return given;
+    given.known.push_back(*options.known);
+    given.open.push_back(*options.open);
+    while (given.open.size() < passes) {
+        given.known.push_back(halved(given.known.back(), ctx));
+        // A coarse sample is open if any of its own is.
+        given.open.push_back(exchanged(halvedMask(exchanged(given.open.back(), ctx), ctx), ctx));
+    }
+    return given;
+}
+
+// What is known, and elsewhere what was voted.
+BrickField withKnown(const Given& given, std::size_t p, BrickField voted, const RunContext& ctx) {
+    if (given.open.empty()) return voted;
+    return BrickField::generate(voted.box(), ctx, [&](const IndexBox& brick, float* samples) {
+        float open[BrickField::kSamples], known[BrickField::kSamples];
+        voted.readBox(brick.min, brick.size(), samples);
+        given.open[p].readBox(brick.min, brick.size(), open);
+        given.known[p].readBox(brick.min, brick.size(), known);
+        for (int i = 0; i < BrickField::kSamples; ++i)
+            if (open[i] == 0.f) samples[i] = known[i];
+    });
+}
+
+bool anyBlockInside(const BrickField& mask, int block, const RunContext& ctx) {
+    const IndexBox box = mask.box();
+    const BrickField means = slidingMean(mask, block, ctx);
+    for (int x = box.min.x; x + block - 1 <= box.max.x; ++x)
+        for (int y = box.min.y; y + block - 1 <= box.max.y; ++y)
+            for (int z = box.min.z; z + block - 1 <= box.max.z; ++z)
+                if (means.inside({x, y, z}) == 1.f) return true;
+    return false;
+}
+
+// Smaller blocks, and fewer passes, where a mask leaves no room for the planned ones.
+void fitToMask(const Given& given, bool blockGiven, std::vector<Pass>& passes, const RunContext& ctx) {
+    for (std::size_t p = passes.size(); !given.masks.empty() && p-- > 0;) {
+        int& block = passes[p].block;
+        const bool fixed = p == 0 && blockGiven;
+        while (!fixed && block >= 8 && !anyBlockInside(given.masks[p], block, ctx)) block /= 2;
+        const bool last = p + 1 == passes.size();
+        if (!last || anyBlockInside(given.masks[p], block, ctx)) continue;
+        if (p > 0)
+            passes.pop_back();
+        else
+            throw Error(ErrorCode::Unusable,
+                        given.open.empty()
+                            ? "--exemplar-mask: no block of " + std::to_string(block) +
+                                  " voxels fits inside the mask; use a smaller --block"
+                            : "nothing of the exemplar is left to fill the hole from; give an EXEMPLAR");
+    }
+}
+
+class Optimization {
+public:
+    Optimization(const std::vector<Pass>& passes, const BlockSynthesisOptions& options, const Given& given,
+                 const RunContext& ctx)
+        : mPasses(passes), mOptions(options), mContext(ctx), mGiven(given) {}
+
+    BlockSynthesisResult run() {
+        arrange();
+        for (std::size_t p = mPasses.size(); p-- > 0;) improve(p);
+        BlockSynthesisResult result;
+        result.map = std::move(mMap);
+        result.field =
+            withKnown(mGiven, 0, voteThroughMap(result.map, mPasses.front().exemplars, mContext), mContext);
+        result.stats = mStats;
+        result.stats.block = result.map.block;
+        result.stats.levels = int(mPasses.size());
+        return result;
+    }
+
+private:
+    // The coarsest pass's first map.
+    void arrange() {
+        const std::size_t last = mPasses.size() - 1;
+        if (mGiven.open.empty()) {
+            mMap = firstArrangement(mPasses[last], mOptions, mGiven.mask(last), mContext);
+            return;
+        }
+        mField = mGiven.known[last];
+        if (mOptions.guessed) {
+            // The guess stays; sources come by searching from any place that may be one.
+            mMap = emptyMap(mPasses[last], mPasses[last].block, mOptions);
+            return;
+        }
+        Stage stage(mContext, "filling what is open", 1);
+        mMap = fillOpen(mPasses[last], mGiven.mask(last), mGiven.open[last], mField, mContext);
+        stage.advance();
+    }
+
+    void improve(std::size_t p) {
+        const Pass& pass = mPasses[p];
+        const bool first = p + 1 == mPasses.size();
+        PatchMap map =
+            emptyMap(pass, p == 0 || first ? pass.block : std::max(4, pass.block * 3 / 4), mOptions);
+        const PatchLevel level = patchLevel(pass, mOptions, map, mGiven.mask(p), mGiven.openAt(p), mContext);
+        liftSources(level, mMap, first ? 1 : 2, map);
+        copyRepeats(level, map);
+        // Sources lifted from where nothing is open say nothing, so what is open begins as the coarse result.
+        if (!mGiven.open.empty() && !first) mField = doubled(mField, pass.target, mContext);
+        const int rounds = first ? kRoundsFirst : p == 0 ? kRoundsLast : kRoundsBetween;
+        Stage stage(
+            mContext,
+            "synthesis pass " + std::to_string(mPasses.size() - p) + " of " + std::to_string(mPasses.size()),
+            std::size_t(rounds));
+        for (int round = 0; round < rounds; ++round) {
+            if (round > 0 || mGiven.open.empty())
+                mField = voteThroughMap(map, pass.exemplars, mContext, &level.exemplars);
+            mField = withKnown(mGiven, p, std::move(mField), mContext);
+            const RoundCounts counts = improveSources(level, mField, int(p) * 64 + round, map, mContext);
+            mStats.matches += counts.patches;
+            mStats.exact += counts.compared;
+            mStats.meanCost = counts.cost;
+            stage.advance();
+        }
+        if (!mGiven.open.empty())
+            mField = withKnown(mGiven, p, voteThroughMap(map, pass.exemplars, mContext, &level.exemplars),
+                               mContext);
+        mMap = std::move(map);
+    }
+
+    const std::vector<Pass>& mPasses;
+    const BlockSynthesisOptions& mOptions;
+    const RunContext& mContext;
+    const Given& mGiven;
+    PatchMap mMap;
+    BrickField mField;
+    BlockSynthesisStats mStats;
+};
 
 }  // namespace
 
@@ -69,40 +231,9 @@ BlockSynthesisResult optimizeTexture(const Fields& exemplars, const BlockSynthes
     }
     own.levels = levelsFor(exemplars, options);
     std::vector<Pass> passes = planPasses(exemplars, own, own.block, ctx);
-    std::vector<BrickField> masks;
-    if (options.mask) masks.push_back(*options.mask);
-    while (options.mask && masks.size() < passes.size()) masks.push_back(halvedMask(masks.back(), ctx));
-    BlockSynthesisResult result;
-    PatchMap coarse;
-    for (std::size_t p = passes.size(); p-- > 0;) {
-        const Pass& pass = passes[p];
-        const BrickField* mask = masks.empty() ? nullptr : &masks[p];
-        const bool first = p + 1 == passes.size();
-        if (first) coarse = firstArrangement(pass, own, mask, ctx);
-        const int side = p == 0 || first ? pass.block : std::max(4, pass.block * 3 / 4);
-        PatchMap map = emptyMap(pass, side);
-        const PatchLevel level = patchLevel(pass, own, map, mask, ctx);
-        liftSources(level, coarse, first ? 1 : 2, map);
-        const int rounds = p == 0 ? kRoundsLast : first ? kRoundsFirst : kRoundsBetween;
-        Stage stage(
-            ctx,
-            "synthesis pass " + std::to_string(passes.size() - p) + " of " + std::to_string(passes.size()),
-            std::size_t(rounds));
-        for (int round = 0; round < rounds; ++round) {
-            const BrickField field = voteThroughMap(map, pass.exemplars, ctx, &level.exemplars);
-            const RoundCounts counts = improveSources(level, field, int(p) * 64 + round, map, ctx);
-            result.stats.matches += counts.patches;
-            result.stats.exact += counts.compared;
-            result.stats.meanCost = counts.cost;
-            stage.advance();
-        }
-        coarse = std::move(map);
-    }
-    result.map = std::move(coarse);
-    result.field = voteThroughMap(result.map, exemplars, ctx);
-    result.stats.block = result.map.block;
-    result.stats.levels = int(passes.size());
-    return result;
+    const Given given = givenFor(own, passes.size(), ctx);
+    fitToMask(given, options.block > 0, passes, ctx);
+    return Optimization(passes, own, given, ctx).run();
 }
 
 }  // namespace vdbsynth

@@ -108,6 +108,33 @@ TEST_CASE("synthesize: an object keeps its faces and grows in between", "[pipeli
     CHECK(solidVoxels(*result.model.grid) == Approx(2 * solidVoxels(*object.grid)).epsilon(0.02));
 }
 
+TEST_CASE("synthesize: a tiling result fills its domain and goes on at the other side",
+          "[pipeline][property]") {
+    const LevelSet exemplar = made("balls", 48);
+    SynthOptions options = sized(80, 80, 48);
+    options.multiple = {false, false, false};
+    options.border = {Border::Tile, Border::Tile, Border::Cut};
+    const SynthResult result = synthesize(exemplar, options);
+    CHECK(result.model.domain.size() == Index3{80, 80, 48});
+    CHECK(result.model.domain.min == exemplar.domain.min);
+    CHECK(result.model.domain.contains(solidBox(*result.model.grid, "result")));
+    // Voxels that change sides between a plane and the next: at the border about as many as inside.
+    const auto values = result.model.grid->getConstAccessor();
+    const auto changes = [&](int from, int to) {
+        int count = 0;
+        for (int y = 0; y < 80; ++y)
+            for (int z = 0; z < 48; ++z)
+                count += (values.getValue({from, y, z}) < 0) != (values.getValue({to, y, z}) < 0);
+        return count;
+    };
+    double inside = 0;
+    for (int x = 0; x + 1 < 80; ++x) inside += changes(x, x + 1) / 79.0;
+    CHECK(changes(79, 0) < 1.5 * inside);
+    CHECK(levelSetHash(*repeatSynthesis(result.map, exemplar).grid) == levelSetHash(*result.model.grid));
+    options.method = SynthesisMethod::Exact;
+    CHECK(test::contains(test::thrownBy([&] { synthesize(exemplar, options); }).message, "--border tile"));
+}
+
 TEST_CASE("synthesize: sizes in voxels, an exemplar box, a mask", "[pipeline][property]") {
     const LevelSet exemplar = made("balls", 64);
     SynthOptions options = sized(70, 50, 1);

@@ -42,7 +42,7 @@ TEST_CASE("improveSources: finds the shift of a copy from sources that are all w
     map.block = 8;
     map.stride = 2;
     map.allocate();
-    const PatchLevel level = patchLevel(pass, options, map, nullptr, {});
+    const PatchLevel level = patchLevel(pass, options, map, nullptr, nullptr, {});
     CHECK(sourcesFor(level, map, 0, {0, 0, 0}) == IndexBox{{0, 0, 0}, {40, 40, 40}});
     double before = 1e9;
     for (int round = 0; round < 20; ++round) {
@@ -78,7 +78,7 @@ TEST_CASE("liftSources: a coarse copy becomes a fine one, within the exemplar", 
     for (std::size_t i = 0; i < coarse.source.size(); ++i)
         for (int axis = 0; axis < 3; ++axis)
             coarse.source[i][axis] = std::clamp(coarse.originOf(coarse.place(i))[axis] + shift[axis], 0, 18);
-    const PatchLevel level = patchLevel(pass, options, fine, nullptr, {});
+    const PatchLevel level = patchLevel(pass, options, fine, nullptr, nullptr, {});
     liftSources(level, coarse, 2, fine);
     for (std::size_t i = 0; i < fine.source.size(); ++i) {
         const Index3 l = fine.place(i), origin = fine.originOf(l);

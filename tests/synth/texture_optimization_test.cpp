@@ -135,3 +135,27 @@ TEST_CASE("optimizeTexture: empty, too small, cancelled", "[synth][error][cancel
               optimizeTexture({exemplar}, optionsFor({64, 64, 64}, 8, 2), ctx);
           }) == int(ErrorCode::Cancelled));
 }
+
+TEST_CASE("optimizeTexture: a tiling target begins as it ends, with no more of a step there than inside",
+          "[synth][property]") {
+    const auto exemplar = shared(test::ballsField({40, 40, 40}, 6, 6.f, 20));
+    BlockSynthesisOptions options = optionsFor({56 + 32, 48 + 32, 40}, 8, 2);
+    options.border = {Border::Tile, Border::Tile, Border::Cut};
+    options.around = {16, 16, 0};
+    const BlockSynthesisResult result = optimizeTexture({exemplar}, options);
+    const BrickField& field = result.field;
+    double across = 0, inside = 0;
+    for (int y = 16; y < 64; ++y)
+        for (int z = 0; z < 40; ++z) {
+            // A period apart all is the same, also beyond both ends.
+            for (int x = 8; x < 24; ++x) REQUIRE(field.at({x, y, z}) == field.at({x + 56, y, z}));
+            across += double(std::abs(field.at({16 + 55, y, z}) - field.at({16, y, z})));
+            for (int x = 20; x < 60; ++x)
+                inside += double(std::abs(field.at({x, y, z}) - field.at({x + 1, y, z}))) / 40;
+        }
+    CHECK(across < 1.3 * inside);
+    for (int x = 16; x < 72; ++x)
+        for (int z = 0; z < 40; ++z) REQUIRE(field.at({x, 12, z}) == field.at({x, 60, z}));
+    CHECK(test::contains(test::thrownBy([&] { synthesizeBlocks({exemplar}, options); }).message,
+                         "--border tile"));
+}

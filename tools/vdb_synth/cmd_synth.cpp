@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
+#include "libvdbsynth/pipeline/fill.h"
 #include "libvdbsynth/pipeline/outputs.h"
 #include "libvdbsynth/pipeline/synth.h"
 
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 
 namespace vdbsynth::cli {
 namespace {
@@ -64,11 +66,12 @@ void parseBorder(const Arguments& arguments, SynthOptions& options) {
     if (text.empty()) return;
     std::vector<std::string> parts = split(text);
     if (parts.size() == 1) parts.assign(3, parts[0]);
-    requireOption(parts.size() == 3, "border", text, "cut or object, once or for each axis with commas");
+    const char* range = "cut, object or tile, once or for each axis with commas";
+    requireOption(parts.size() == 3, "border", text, range);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        requireOption(parts[axis] == "cut" || parts[axis] == "object", "border", text,
-                      "cut or object, once or for each axis with commas");
-        options.border[axis] = parts[axis] == "cut" ? Border::Cut : Border::Object;
+        const std::string& part = parts[axis];
+        requireOption(part == "cut" || part == "object" || part == "tile", "border", text, range);
+        options.border[axis] = part == "cut" ? Border::Cut : part == "object" ? Border::Object : Border::Tile;
     }
 }
 
@@ -96,7 +99,68 @@ SynthOptions parseOptions(const Arguments& arguments) {
     return options;
 }
 
+LevelSet holeOf(Run& run, const LevelSet& partial, const ModelOptions& like) {
+    const std::string text = run.arguments.text("hole");
+    IndexBox box;
+    if (text == "auto") return holesAtOpenEdges(partial, run.context);
+    if (parseBox(text, box)) return boxHole(partial, box, run.context);
+    requireModelPath(text);
+    ModelOptions options = like;
+    options.grid.clear();
+    return run.load(text, options);
+}
+
+// synth [EXEMPLAR] --keep PARTIAL --hole MODEL: more geometry where some is missing.
+void fill(Run& run) {
+    const Arguments& arguments = run.arguments;
+    run.requireInputs(0, 1);
+    for (const char* option :
+         {"size", "border", "exemplar-box", "exemplar-mask", "drift", "draft", "method", "source-map"})
+        if (arguments.has(option))
+            throw Error(ErrorCode::InvalidOption,
+                        std::string("--") + option + ": has no meaning with --keep, which fills holes");
+    if (!arguments.has("hole"))
+        throw Error(ErrorCode::InvalidOption,
+                    "--hole: missing; give a model whose inside is to be filled, a box i,j,k,I,J,K, or auto");
+    const std::vector<std::string> paths = run.outputPaths();
+    requireOutputPaths(paths);
+    FillOptions options;
+    options.block = arguments.whole("block", 0, 4, 256);
+    options.levels = arguments.whole("levels", 0, 1, 8);
+    ModelOutputOptions outputs;
+    outputs.adaptivity = arguments.real("adaptivity", 0, 0, 1);
+    const std::string partialPath = arguments.text("keep");
+    requireModelPath(partialPath);
+    ModelOptions modelOptions = run.modelOptions();
+    modelOptions.halfWidth = 3;
+    modelOptions.keepSource = arguments.text("hole") == "auto";
+    const LevelSet partial = run.load(partialPath, modelOptions);
+    // All else is made in the voxels of what is kept.
+    modelOptions.voxelSize = voxelSizeOf(*partial.grid);
+    modelOptions.resolution = 0;
+    modelOptions.keepSource = false;
+    const LevelSet hole = holeOf(run, partial, modelOptions);
+    std::optional<LevelSet> exemplar;
+    if (!arguments.inputs.empty()) {
+        requireModelPath(arguments.inputs[0]);
+        exemplar = run.load(arguments.inputs[0], modelOptions);
+    }
+    const FillResult result = fillHoles(partial, hole, exemplar ? &*exemplar : nullptr, options, run.context);
+    outputs.metadata = run.metadata();
+    writeModel(result.model, paths, outputs, run.outputs(), run.context);
+    run.count("block", result.stats.block);
+    run.count("levels", result.stats.levels);
+    run.count("matches", result.stats.matches);
+    run.count("costs_computed", result.stats.exact);
+    run.count("mean_match_cost", result.stats.meanCost);
+    run.describe(result.model);
+    run.finish();
+}
+
 void synth(Run& run) {
+    if (run.arguments.has("keep")) return fill(run);
+    if (run.arguments.has("hole"))
+        throw Error(ErrorCode::InvalidOption, "--hole: needs --keep PARTIAL, the model that has the hole");
     run.requireInputs(1, 1);
     const std::vector<std::string> paths = run.outputPaths();
     requireOutputPaths(paths);
@@ -143,7 +207,7 @@ void synth(Run& run) {
 
 const Command kSynth{
     "synth",
-    "synth EXEMPLAR -o OUT --size X,Y,Z [options]",
+    "synth EXEMPLAR -o OUT --size X,Y,Z [options] | synth [EXEMPLAR] --keep PARTIAL --hole MODEL -o OUT",
     "Make more geometry like an exemplar's",
     "vdb_synth synth grid.vdb -o more.vdb --size 2x,2x,1x",
     {{"size", "X,Y,Z", "size of the result: voxels, or multiples of the exemplar's domain such as 2x,2x,1x"},
@@ -154,11 +218,18 @@ const Command kSynth{
       "default; exact: blocks in raster order, each the exact best match; paper: as published in 2004"},
      {"draft", "", "a quick look: blocks are searched at half the resolution, distances are approximate"},
      {"border", "KIND",
-      "cut or object, once or for each growing axis; default cut where a domain is recorded"},
+      "cut, object or tile (the result repeats without a seam), once or for each axis; default cut where a "
+      "domain "
+      "is recorded"},
      {"exemplar-box", "BOX",
       "domain i,j,k,I,J,K in the exemplar's index space, both corners inclusive (voxels)"},
      {"exemplar-mask", "FILE.vdb", "take blocks only from where this grid is active; its box is the domain"},
      {"drift", "D", "how far sources may be from their own place along axes at 1x (voxels), default 0"},
+     {"keep", "PARTIAL",
+      "fill the holes of this model instead; the exemplar is then optional, default the model itself"},
+     {"hole", "MODEL",
+      "what to fill with --keep: the inside of a model, a box i,j,k,I,J,K of the kept model's voxels, or "
+      "auto: a ball round each loop of open edges"},
      {"source-map", "[FILE.vdb]", "also write the source map, for repeat; without FILE into the .vdb output",
       false, 0, ".vdb"},
      {"adaptivity", "A", "0 to 1: merge flat parts of a mesh output, default 0"}},

@@ -1,0 +1,61 @@
+"""synth's ways, borders and holes, with the real program."""
+import json
+import unittest
+
+from support import CliTest, sample
+
+
+class Synth(CliTest):
+    def model(self, name):
+        return json.loads(self.ok("info", name, "--json").stdout)["model"]
+
+    def test_methods_tile_and_their_words(self):
+        self.ok("make", "sponge", "e.vdb", "--resolution", 32)
+        hashes = set()
+        for method in ("default", "exact", "paper"):
+            with self.subTest(method):
+                self.ok("synth", "e.vdb", "-o", "m.vdb", "--size", "2x,2x,1x", "--method", method, "--source-map", "--report", "r.json")
+                model = self.model("m.vdb")
+                self.assertTrue(model["valid"], model)
+                self.assertEqual(model["domain"], "0,0,0,63,63,31")
+                self.ok("repeat", "m.vdb", "e.vdb", "-o", "again.vdb")
+                distances = json.loads(self.ok("compare", "m.vdb", "again.vdb", "--json").stdout)["others"][0]["distances"]
+                self.assertEqual(distances["surface"]["hausdorff"], 0)
+                hashes.add(json.dumps(model["solid_voxels"]))
+        self.assertEqual(len(hashes), 3)
+        self.ok("synth", "e.vdb", "-o", "t.vdb", "--size", "48,48,32", "--border", "tile,tile,cut")
+        self.assertEqual(self.model("t.vdb")["domain"], "0,0,0,47,47,31")
+        self.fails(2, "--method", "synth", "e.vdb", "-o", "m.vdb", "--size", "2x,2x,1x", "--method", "best")
+        self.fails(2, "--border tile: needs --method default", "synth", "e.vdb", "-o", "m.vdb", "--size", "2x,2x,1x", "--border", "tile",
+                   "--method", "exact")
+        self.fails(2, "a power of two", "synth", "e.vdb", "-o", "m.vdb", "--size", "2x,2x,1x", "--block", 12, "--method", "paper")
+
+    def test_holes_of_real_meshes(self):
+        for name, folder in (("camelhead.off", "meshes"), ("elephant-with-holes.off", "bad")):
+            with self.subTest(name):
+                self.ok("convert", sample(f"{folder}/{name}"), "-o", "closed.vdb", "--resolution", 100)
+                self.ok("synth", "--keep", sample(f"{folder}/{name}"), "--hole", "auto", "--resolution", 100, "-o", "filled.vdb", "-o", "filled.obj")
+                self.assertTrue(self.model("filled.vdb")["valid"])
+                self.assertTrue(json.loads(self.ok("info", "filled.obj", "--json").stdout)["closed_manifold"])
+                closed, filled = (self.model(f"{n}.vdb")["solid_voxels"] for n in ("closed", "filled"))
+                self.assertLess(abs(filled - closed) / closed, 0.05)
+
+    def test_words_of_holes(self):
+        self.ok("make", "balls", "e.vdb", "--resolution", 48)
+        self.ok("synth", "--keep", "e.vdb", "--hole", "16,16,16,31,31,31", "-o", "a.vdb")
+        self.ok("make", "balls", "other.vdb", "--resolution", 48, "--seed", 4)
+        self.ok("synth", "other.vdb", "--keep", "e.vdb", "--hole", "16,16,16,31,31,31", "-o", "b.vdb", "--block", 8)
+        self.ok("crop", "e.vdb", "-o", "mask.vdb", "--box", "16,16,16,31,31,31")
+        self.ok("synth", "--keep", "e.vdb", "--hole", "mask.vdb", "-o", "c.vdb")
+        for name in ("a.vdb", "b.vdb", "c.vdb"):
+            self.assertTrue(self.model(name)["valid"], name)
+        self.fails(2, "--hole: missing", "synth", "--keep", "e.vdb", "-o", "x.vdb")
+        self.fails(2, "--hole: needs --keep", "synth", "e.vdb", "--size", "2x,2x,1x", "--hole", "auto", "-o", "x.vdb")
+        self.fails(2, "--size: has no meaning with --keep", "synth", "--keep", "e.vdb", "--hole", "auto", "--size", "2x,2x,1x", "-o", "x.vdb")
+        self.fails(1, "--hole auto: needs a mesh", "synth", "--keep", "e.vdb", "--hole", "auto", "-o", "x.vdb")
+        self.fails(1, "outside the model's domain", "synth", "--keep", "e.vdb", "--hole", "160,16,16,171,31,31", "-o", "x.vdb")
+        self.fails(3, "nothere.vdb", "synth", "--keep", "nothere.vdb", "--hole", "auto", "-o", "x.vdb")
+
+
+if __name__ == "__main__":
+    unittest.main()

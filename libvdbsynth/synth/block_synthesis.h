@@ -42,7 +42,7 @@ struct BlockSynthesisOptions {
     const BrickField* known = nullptr;
     const BrickField* open = nullptr;
     bool guessed = false;  ///< what `known` has where it is open is a guess to begin with, not nothing
-    bool paper = false;  ///< synthesizeBlocks as the paper has it; the block is then a power of two
+    bool paper = false;    ///< synthesizeBlocks as the paper has it; the block is then a power of two
 };
 
 struct BlockSynthesisStats {

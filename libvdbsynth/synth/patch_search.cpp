@@ -13,9 +13,10 @@ namespace vdbsynth {
 namespace {
 
 constexpr std::uint32_t kDrawPurpose = 0x70730000;
-constexpr float kCostFloor = 0.02f;   // [voxels^2] added to costs before they are compared
-constexpr float kOverusePenalty = 2;  // share added for every time more than expected
-constexpr float kAgreement = 0.01f;   // [voxels^2] cost of patches that agree
+constexpr float kCostFloor = 0.02f;         // [voxels^2] added to costs before they are compared
+constexpr float kOverusePenalty = 2;        // share added for every time more than expected
+constexpr float kCompanionDiscount = 0.1f;  // share off for each neighbour that the source goes on from
+constexpr float kAgreement = 0.01f;         // [voxels^2] cost of patches that agree
 constexpr std::size_t kPatchesAChunk = 64;
 
 // How often each part of each exemplar is a source, in cells of a stride.
@@ -102,12 +103,29 @@ private:
     void look(std::int32_t exemplar, const Index3& place) {
         const std::size_t e = std::size_t(exemplar);
         if (!sourcesFor(mLevel, mMap, e, mOrigin).contains(place) || !eligible(exemplar, place)) return;
-        const float factor = mUses.penalty(e, place);
+        const float factor =
+            mUses.penalty(e, place) * (1 - kCompanionDiscount * float(companions(exemplar, place)));
         const float cost = patchDifference(mSamples.data(), mLevel.exemplars[e], place, mMap.block,
                                            mBest.dearness / factor - kCostFloor);
         ++mCompared;
         const float dearness = (cost + kCostFloor) * factor;
         if (dearness < mBest.dearness) mBest = {place, exemplar, cost, dearness};
+    }
+
+    // Neighbours whose sources lie to this one as they lie themselves: 0 to 6.
+    int companions(std::int32_t exemplar, const Index3& place) const {
+        const Index3 lattice = mMap.lattice();
+        int count = 0;
+        for (int axis = 0; axis < 3; ++axis)
+            for (const int side : {-1, 1}) {
+                Index3 other = mPlace;
+                other[axis] += side;
+                if (other[axis] < 0 || other[axis] >= lattice[axis]) continue;
+                const std::size_t k = mMap.index(other);
+                count +=
+                    mMap.exemplar[k] == exemplar && mMap.source[k] - mMap.originOf(other) == place - mOrigin;
+            }
+        return count;
     }
 
     void lookAtNeighbours(int step) {

@@ -13,7 +13,10 @@ namespace vdbsynth {
 ///  - a patch votes with (1 + cost / 0.01 voxel^2)^-2.5: where patches agree the result is a copy, where they
 ///    do not the best one has the say, for a mean of misplaced surfaces is no surface of the exemplar;
 ///  - a source used more often than the exemplar's surface would be on average costs more [kaspar2015,
-///    section 3.3], so that all of the exemplar is used and shares of volume stay.
+///    section 3.3], so that all of the exemplar is used and shares of volume stay;
+///  - a source costs a tenth less for each of the six neighbours whose source it goes on from: where costs
+///  are
+///    alike, as in what is rough throughout, larger copies keep the roughness that a vote would smooth.
 /// Patches are as long as the block in the last pass, three quarters of it before, and never more than half
 /// of the exemplar.
 ///

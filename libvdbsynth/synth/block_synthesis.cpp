@@ -268,7 +268,8 @@ BlockSynthesisResult synthesizeBlocks(const Fields& exemplars, const BlockSynthe
     }
     if (options.paper)
         while (block & (block - 1)) block &= block - 1;
-    std::vector<Pass> passes = planPasses(exemplars, options, block, ctx);
+    std::vector<Pass> passes =
+        planPasses(exemplars, options, block, options.levels > 0 ? options.levels : 3, ctx);
     if (options.paper)
         for (Pass& pass : passes) {
             while (pass.block & (pass.block - 1)) pass.block &= pass.block - 1;

@@ -74,9 +74,8 @@ bool halvesWhatTiles(const BlockSynthesisOptions& options, int scale) {
 }  // namespace
 
 std::vector<SynthesisPass> planPasses(const Fields& exemplars, const BlockSynthesisOptions& options,
-                                      int block, const RunContext& ctx) {
+                                      int block, int levels, const RunContext& ctx) {
     std::vector<SynthesisPass> passes{{exemplars, options.size, block, 1}};
-    const int levels = options.levels > 0 ? options.levels : 3;
     while (int(passes.size()) < levels && halvesWhatTiles(options, passes.back().scale)) {
         SynthesisPass coarse;
         coarse.target = halfOf(passes.back().target);

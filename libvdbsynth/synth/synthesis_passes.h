@@ -20,8 +20,10 @@ struct SynthesisPass {
 IndexBox sourceBox(const BlockSynthesisOptions& options, const SynthesisPass& pass, const Index3& exemplar,
                    int side, const Index3& origin);
 
-/// The passes, finest first; coarser ones end where a block would fall under four samples.
+/// The passes, finest first, at most `levels`; coarser ones end where a block would fall under four samples,
+/// or the period of a target that tiles is odd. A note says so if the options ask for more.
 std::vector<SynthesisPass> planPasses(const std::vector<std::shared_ptr<const BrickField>>& exemplars,
-                                      const BlockSynthesisOptions& options, int block, const RunContext& ctx);
+                                      const BlockSynthesisOptions& options, int block, int levels,
+                                      const RunContext& ctx);
 
 }  // namespace vdbsynth

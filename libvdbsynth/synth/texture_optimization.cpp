@@ -229,8 +229,11 @@ BlockSynthesisResult optimizeTexture(const Fields& exemplars, const BlockSynthes
         own.block = 256;
         for (const Index3& size : sizes) own.block = std::min(own.block, deriveBlock(size, options));
     }
-    own.levels = levelsFor(exemplars, options);
-    std::vector<Pass> passes = planPasses(exemplars, own, own.block, ctx);
+    std::vector<Pass> passes = planPasses(exemplars, own, own.block, levelsFor(exemplars, options), ctx);
+    if (passes.size() == 1 && std::count(own.border.begin(), own.border.end(), Border::Tile) > 0)
+        message(
+            ctx, MessageLevel::Note,
+            "--border tile: an odd size is made in one pass; a multiple of 4 voxels gives better results");
     const Given given = givenFor(own, passes.size(), ctx);
     fitToMask(given, options.block > 0, passes, ctx);
     return Optimization(passes, own, given, ctx).run();

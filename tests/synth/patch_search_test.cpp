@@ -59,31 +59,3 @@ TEST_CASE("improveSources: finds the shift of a copy from sources that are all w
     // Some sources go elsewhere, since the best one may be in use too often.
     CHECK(double(right) > 0.75 * double(map.source.size()));
 }
-
-TEST_CASE("liftSources: a coarse copy becomes a fine one, within the exemplar", "[synth][property]") {
-    const auto exemplar = std::make_shared<const BrickField>(test::ballsField({48, 48, 48}, 2, 5.f, 25));
-    BlockSynthesisOptions options;
-    options.size = {64, 64, 64};
-    const auto mapOf = [](const Index3& target, int block) {
-        PatchMap map;
-        map.target = target;
-        map.block = block;
-        map.stride = 2;
-        map.allocate();
-        return map;
-    };
-    const SynthesisPass pass{{exemplar}, {64, 64, 64}, 8, 1};
-    PatchMap coarse = mapOf({32, 32, 32}, 6), fine = mapOf({64, 64, 64}, 8);
-    const Index3 shift{-4, 3, 1};
-    for (std::size_t i = 0; i < coarse.source.size(); ++i)
-        for (int axis = 0; axis < 3; ++axis)
-            coarse.source[i][axis] = std::clamp(coarse.originOf(coarse.place(i))[axis] + shift[axis], 0, 18);
-    const PatchLevel level = patchLevel(pass, options, fine, nullptr, nullptr, {});
-    liftSources(level, coarse, 2, fine);
-    for (std::size_t i = 0; i < fine.source.size(); ++i) {
-        const Index3 l = fine.place(i), origin = fine.originOf(l);
-        REQUIRE(IndexBox{{0, 0, 0}, {40, 40, 40}}.contains(fine.source[i]));
-        if (std::min({origin.x, origin.y, origin.z}) >= 12 && std::max({origin.x, origin.y, origin.z}) <= 30)
-            REQUIRE(fine.source[i] == origin + shift * 2);
-    }
-}

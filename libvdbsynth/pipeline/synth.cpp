@@ -3,6 +3,7 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/grid/pyramid.h"
+#include "libvdbsynth/pipeline/carry.h"
 #include "libvdbsynth/synth/texture_optimization.h"
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/mask.h"
@@ -210,6 +211,7 @@ SynthResult synthesize(const LevelSet& exemplar, const SynthOptions& options, co
         synthesis.field = voteThroughMap(plan.map.patches, {gatherForVote(plan.map, exemplar, ctx)}, ctx);
     }
     result.model = finish(plan.map, synthesis.field, *exemplar.grid, ctx);
+    result.model.carried = carryThroughMap(plan.map, exemplar, *result.model.grid, ctx);
     result.map = std::move(plan.map);
     result.stats = synthesis.stats;
     result.stats.block = result.map.patches.block;
@@ -253,7 +255,9 @@ LevelSet repeatSynthesis(const SourceMap& map, const LevelSet& exemplar, const R
         throw Error(ErrorCode::ShapeMismatch, "the exemplar has no surface in the map's box " +
                                                   boxText(scaled.exemplarBox) +
                                                   "; it is not the map's exemplar or lies elsewhere");
-    return finish(scaled, voteThroughMap(scaled.patches, {field}, ctx), *exemplar.grid, ctx);
+    LevelSet model = finish(scaled, voteThroughMap(scaled.patches, {field}, ctx), *exemplar.grid, ctx);
+    model.carried = carryThroughMap(scaled, exemplar, *model.grid, ctx);
+    return model;
 }
 
 }  // namespace vdbsynth

@@ -30,6 +30,16 @@ class Synth(CliTest):
                    "--method", "exact")
         self.fails(2, "a power of two", "synth", "e.vdb", "-o", "m.vdb", "--size", "2x,2x,1x", "--block", 12, "--method", "paper")
 
+    def test_colours_come_along(self):
+        self.ok("make", "sponge", "e.vdb", "--resolution", 32)
+        self.ok("convert", "e.vdb", "-o", "e.obj")
+        lines = self.read("e.obj").decode().splitlines()
+        self.write("c.obj", "\n".join(f"{l} 0.25 0.5 1" if l.startswith("v ") else l for l in lines).encode() + b"\n")
+        self.ok("synth", "c.obj", "-o", "m.ply", "-o", "m.vdb", "--voxel-size", 1, "--exemplar-box", "0,0,0,31,31,31", "--size", "2x,1x,1x", "--source-map")
+        self.assertIn(b"property uchar red", self.read("m.ply")[:600])
+        self.ok("repeat", "m.vdb", "c.obj", "-o", "again.ply", "--voxel-size", 1)
+        self.assertEqual(self.read("again.ply"), self.read("m.ply"))
+
     def test_holes_of_real_meshes(self):
         for name, folder in (("camelhead.off", "meshes"), ("elephant-with-holes.off", "bad")):
             with self.subTest(name):

@@ -180,6 +180,43 @@ TEST_CASE("repeatSynthesis: a finer exemplar gives the matching finer result", "
     CHECK(test::thrownBy([&] { repeatSynthesis(result.map, coarse); }).code == int(ErrorCode::ShapeMismatch));
 }
 
+TEST_CASE("synthesize: what comes with the exemplar is read through the map, and repeated",
+          "[pipeline][property]") {
+    LevelSet exemplar = made("balls", 40);
+    // A number that tells the voxel it lies on, and a colour; and a grid of an old source map, which stays
+    // behind.
+    auto place = openvdb::FloatGrid::create(-1.f);
+    place->setName("place");
+    auto colour = openvdb::Vec3SGrid::create(openvdb::Vec3f(0));
+    colour->setName("Cd");
+    for (auto it = exemplar.grid->cbeginValueOn(); it; ++it) {
+        const openvdb::Coord c = it.getCoord();
+        place->tree().setValueOn(c, float(c.x() + 100 * c.y() + 10000 * c.z()));
+        colour->tree().setValueOn(c, openvdb::Vec3f(0.1f, 0.2f, 0.3f));
+    }
+    auto old = openvdb::Vec3IGrid::create();
+    old->setName("source");
+    exemplar.carried = {place, colour, old};
+    const SynthResult result = synthesize(exemplar, sized(2, 1.5, 1));
+    REQUIRE(result.model.carried.size() == 2);
+    CHECK(result.model.carried[1]->getName() == "Cd");
+    const auto carried = openvdb::gridPtrCast<openvdb::FloatGrid>(result.model.carried[0]);
+    const auto source =
+        openvdb::gridPtrCast<openvdb::Vec3IGrid>(sourceMapGrids(result.map, *result.model.grid)[0]);
+    std::size_t exact = 0, all = 0;
+    for (auto it = source->cbeginValueOn(); it; ++it, ++all) {
+        const openvdb::Vec3i from = *it;
+        exact +=
+            carried->tree().getValue(it.getCoord()) == float(from.x() + 100 * from.y() + 10000 * from.z());
+    }
+    CHECK(double(exact) > 0.8 * double(all));
+    CHECK(double(carried->activeVoxelCount()) > 0.95 * double(all));
+    const LevelSet again = repeatSynthesis(result.map, exemplar);
+    REQUIRE(again.carried.size() == 2);
+    CHECK(openvdb::gridPtrCast<openvdb::FloatGrid>(again.carried[0])->activeVoxelCount() ==
+          carried->activeVoxelCount());
+}
+
 TEST_CASE("sourceMapGrids: on nearly all of the band the result lies where the map says",
           "[pipeline][property]") {
     const LevelSet exemplar = made("balls", 48);

@@ -18,7 +18,8 @@ void repeat(Run& run) {
     requireModelPath(run.arguments.inputs[1]);
     ModelOutputOptions outputs;
     outputs.adaptivity = run.arguments.real("adaptivity", 0, 0, 1);
-    const ModelOptions modelOptions = run.modelOptions();
+    ModelOptions modelOptions = run.modelOptions();
+    modelOptions.carry = true;
     SourceMap map = readSourceMap(mapPath, run.context);
     run.noteInput(mapPath);
     if (run.arguments.has("half-width")) map.halfWidth = float(modelOptions.halfWidth);

@@ -181,6 +181,7 @@ void synth(Run& run) {
     requireModelPath(run.arguments.inputs[0]);
     ModelOptions modelOptions = run.modelOptions();
     modelOptions.halfWidth = 3;
+    modelOptions.carry = true;
     const LevelSet exemplar = run.load(run.arguments.inputs[0], modelOptions);
     if (run.arguments.has("exemplar-mask")) options.exemplarMask = run.loadMask("exemplar-mask");
     const SynthResult result = synthesize(exemplar, options, run.context);

@@ -5,6 +5,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
@@ -56,7 +57,10 @@ void parallelFor(const RunContext& ctx, std::size_t count, std::size_t grain,
         tbb::blocked_range<std::size_t>(0, chunks, 1),
         [&](const tbb::blocked_range<std::size_t>& range) {
             handOver.take();
-            for (auto chunk = range.begin(); chunk != range.end(); ++chunk) runChunk(chunk);
+            // A thread that waits inside a chunk must not begin another one: chunks may be large.
+            tbb::this_task_arena::isolate([&] {
+                for (auto chunk = range.begin(); chunk != range.end(); ++chunk) runChunk(chunk);
+            });
             handOver.give();
         },
         tbb::simple_partitioner());

@@ -20,6 +20,7 @@ struct Nearest {
     float distance = kFar;
     std::uint32_t face = kNoFace;
 };
+constexpr Nearest kNone;
 
 // What a triangle lies in: a disc, with which most triangles are refused at a fraction of their distance's
 // cost.
@@ -72,33 +73,89 @@ const std::array<Step, 26>& neighbourSteps() {
     return steps;
 }
 
+// A brick and one layer around it.
+struct Padded {
+    float distance[kPadded * kPadded * kPadded];
+    std::uint32_t face[kPadded * kPadded * kPadded];
+};
+
+// For each voxel of a row the neighbours, by bit, whose faces may be nearer than its own: a face cannot be
+// nearer here than its distance there less the step.
+__attribute__((target_clones("avx2", "default"))) void worthTrying(const Padded& around, int centre,
+                                                                   const Nearest* row, float halfWidth,
+                                                                   std::uint32_t* steps) {
+    float limit[kSide];
+    std::uint32_t own[kSide];
+    for (int z = 0; z < kSide; ++z) {
+        // seed() tried every face within one voxel.
+        limit[z] = row[z].distance < 0.999f ? -kFar : std::min(row[z].distance, halfWidth);
+        own[z] = row[z].face;
+        steps[z] = 0;
+    }
+    if (*std::max_element(limit, limit + kSide) < 0) return;
+    std::uint32_t bit = 1;
+    for (const Step& step : neighbourSteps()) {
+        const float* distance = around.distance + centre + step.offset;
+        const std::uint32_t* face = around.face + centre + step.offset;
+        for (int z = 0; z < kSide; ++z) steps[z] |= distance[z] <= limit[z] && face[z] != own[z] ? bit : 0;
+        bit <<= 1;
+    }
+}
+
 bool better(const Nearest& a, const Nearest& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.face < b.face;
 }
 
-// Squared distance of p to the triangle a, b, c [ericson2005, section 5.1.5].
-double squaredDistance(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-    const auto squared = [&](const Vec3d& q) { return dot(p - q, p - q); };
-    const Vec3d ab = b - a, ac = c - a, ap = p - a;
-    const double d1 = dot(ab, ap), d2 = dot(ac, ap);
-    if (d1 <= 0 && d2 <= 0) return squared(a);
-    const double bb = dot(ab, ab), bc = dot(ab, ac), cc = dot(ac, ac);
-    const double d3 = d1 - bb, d4 = d2 - bc;
-    if (d3 >= 0 && d4 <= d3) return squared(b);
-    const double vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) return squared(a + ab * (d1 > d3 ? d1 / (d1 - d3) : 0.0));
-    const double d5 = d1 - bc, d6 = d2 - cc;
-    if (d6 >= 0 && d5 <= d6) return squared(c);
-    const double vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return squared(a + ac * (d2 > d6 ? d2 / (d2 - d6) : 0.0));
-    const double va = d3 * d6 - d5 * d4;
+// Squared distance to the triangle a, b, c [ericson2005, section 5.1.5] of a point that lies at a + ap; all
+// that is computed is of a voxel's size, so that floats do.
+float squaredDistance(const Vec3f& ap, const Vec3f& ab, const Vec3f& ac) {
+    const auto squaredAt = [&](float v, float w) {
+        const Vec3f offset = ap - ab * v - ac * w;
+        return dot(offset, offset);
+    };
+    const float d1 = dot(ab, ap), d2 = dot(ac, ap);
+    if (d1 <= 0 && d2 <= 0) return squaredAt(0, 0);
+    const float bb = dot(ab, ab), bc = dot(ab, ac), cc = dot(ac, ac);
+    const float d3 = d1 - bb, d4 = d2 - bc;
+    if (d3 >= 0 && d4 <= d3) return squaredAt(1, 0);
+    const float vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return squaredAt(d1 > d3 ? d1 / (d1 - d3) : 0.f, 0);
+    const float d5 = d1 - bc, d6 = d2 - cc;
+    if (d6 >= 0 && d5 <= d6) return squaredAt(0, 1);
+    const float vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return squaredAt(0, d2 > d6 ? d2 / (d2 - d6) : 0.f);
+    const float va = d3 * d6 - d5 * d4;
     if (va <= 0 && d4 >= d3 && d5 >= d6) {
-        const double sum = (d4 - d3) + (d5 - d6);
-        return squared(b + (c - b) * (sum > 0 ? (d4 - d3) / sum : 0.0));
+        const float sum = (d4 - d3) + (d5 - d6);
+        const float w = sum > 0 ? (d4 - d3) / sum : 0.f;
+        return squaredAt(1 - w, w);
     }
-    const double scale = 1 / (va + vb + vc);
-    return squared(a + ab * (vb * scale) + ac * (vc * scale));
+    const float area = va + vb + vc;
+    if (!(area > 0)) return std::min({squaredAt(0, 0), squaredAt(1, 0), squaredAt(0, 1)});
+    // A sliver's rounding may lead outside it.
+    const float v = std::clamp(vb / area, 0.f, 1.f);
+    return squaredAt(v, std::clamp(vc / area, 0.f, 1 - v));
 }
+
+// The faces that were tried on one voxel.
+class FacesTried {
+public:
+    /// False if the face was there already.
+    bool add(std::uint32_t face) {
+        const std::uint64_t bit = std::uint64_t(1) << (face & 63);
+        if (mBits & bit)
+            for (int i = 0; i < mCount; ++i)
+                if (mFaces[i] == face) return false;
+        mBits |= bit;
+        mFaces[mCount++] = face;
+        return true;
+    }
+
+private:
+    std::uint64_t mBits = 0;
+    int mCount = 0;
+    std::uint32_t mFaces[26];
+};
 
 class Propagation {
 public:
@@ -109,9 +166,15 @@ public:
         mSlots.assign(std::size_t(mBricks.x) * std::size_t(mBricks.y) * std::size_t(mBricks.z), -1);
         for (const Vec3f& p : mesh.points)
             for (int axis = 0; axis < 3; ++axis) mSlack = std::max(mSlack, 1e-4f + 2e-6f * std::abs(p[axis]));
-        for (const Triangle& t : mTriangles)
-            mDiscs.push_back(discAround(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]));
+        mDiscs.resize(mTriangles.size());
+        parallelFor(ctx, mTriangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const Triangle& t = mTriangles[i];
+                mDiscs[i] = discAround(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]);
+            }
+        });
         collectBricks();
+        collectFaces();
     }
 
     void propagate() {
@@ -196,23 +259,34 @@ private:
                 }
         mNow.assign(mOrigins.size() * BrickField::kSamples, Nearest{});
         mFresh.assign(mNow.size(), 0);
-        mFacesOf.resize(mOrigins.size());
+    }
+
+    // For each brick the faces within a voxel of it, in their order.
+    void collectFaces() {
+        std::vector<std::size_t> next(mOrigins.size() + 1, 0);
+        const auto slotAt = [&](const Index3& b) { return std::size_t(mSlots[brickIndex(b)]); };
+        for (const Triangle& t : mTriangles)
+            forBricks(bricksNear(t, 1.f), [&](const Index3& b) { ++next[slotAt(b) + 1]; });
+        for (std::size_t slot = 1; slot < next.size(); ++slot) next[slot] += next[slot - 1];
+        mFirstFace = next;
+        mFaces.resize(next.back());
         for (std::uint32_t i = 0; i < mTriangles.size(); ++i)
             forBricks(bricksNear(mTriangles[i], 1.f),
-                      [&](const Index3& b) { mFacesOf[std::size_t(mSlots[brickIndex(b)])].push_back(i); });
+                      [&](const Index3& b) { mFaces[next[slotAt(b)]++] = i; });
     }
 
     float distance(const Index3& p, std::uint32_t face) const {
         const Triangle& t = mTriangles[face];
-        return float(std::sqrt(
-            squaredDistance({double(p.x), double(p.y), double(p.z)}, cast<double>(mMesh.points[t[0]]),
-                            cast<double>(mMesh.points[t[1]]), cast<double>(mMesh.points[t[2]]))));
+        const Vec3f& a = mMesh.points[t[0]];
+        return std::sqrt(squaredDistance(Vec3f{float(p.x), float(p.y), float(p.z)} - a,
+                                         mMesh.points[t[1]] - a, mMesh.points[t[2]] - a));
     }
 
     void seed() {
         parallelFor(mContext, mOrigins.size(), 8, [&](std::size_t begin, std::size_t end) {
             for (std::size_t slot = begin; slot < end; ++slot)
-                for (std::uint32_t face : mFacesOf[slot]) {
+                for (std::size_t f = mFirstFace[slot]; f < mFirstFace[slot + 1]; ++f) {
+                    const std::uint32_t face = mFaces[f];
                     IndexBox reach;
                     for (int axis = 0; axis < 3; ++axis) {
                         const Triangle& t = mTriangles[face];
@@ -222,15 +296,21 @@ private:
                         reach.max[axis] = int(std::floor(std::max({a, b, c}) + 1));
                     }
                     reach = reach.intersection(IndexBox::cube(mOrigins[slot], kSide));
+                    const Triangle& t = mTriangles[face];
+                    const Vec3f a = mMesh.points[t[0]], ab = mMesh.points[t[1]] - a,
+                                ac = mMesh.points[t[2]] - a;
+                    const Disc disc = mDiscs[face];
                     Nearest* brick = &mNow[slot * BrickField::kSamples];
                     for (int x = reach.min.x; x <= reach.max.x; ++x)
                         for (int y = reach.min.y; y <= reach.max.y; ++y)
                             for (int z = reach.min.z; z <= reach.max.z; ++z) {
                                 const Index3 l = Index3{x, y, z} - mOrigins[slot];
                                 Nearest& here = brick[(l.x * kSide + l.y) * kSide + l.z];
-                                const Nearest candidate{distance({x, y, z}, face), face};
-                                if (better(candidate, here)) here = candidate;
                                 mFresh[slot * BrickField::kSamples + std::size_t(&here - brick)] = 1;
+                                const Vec3f p{float(x), float(y), float(z)};
+                                if (isBeyond(disc, p, std::min(here.distance, 2.f) + mSlack)) continue;
+                                const Nearest candidate{std::sqrt(squaredDistance(p - a, ab, ac)), face};
+                                if (better(candidate, here)) here = candidate;
                             }
                 }
         });
@@ -238,7 +318,7 @@ private:
 
     // The brick with one layer of its neighbours around it; of those only what the last round changed, since
     // the rest was tried when it was new. False if there is nothing to try.
-    bool pad(std::size_t slot, Nearest* padded) const {
+    bool pad(std::size_t slot, Padded& padded) const {
         const Index3 origin = mOrigins[slot];
         bool any = false;
         for (int dx = -1; dx <= 1; ++dx)
@@ -252,7 +332,7 @@ private:
     }
 
     // The part of a padded brick that lies in one of the 27 bricks.
-    bool padFrom(std::int32_t from, const Index3& side, Nearest* padded) const {
+    bool padFrom(std::int32_t from, const Index3& side, Padded& padded) const {
         const auto first = [](int d) { return d > 0 ? kSide : d; };
         const auto last = [](int d) { return d < 0 ? -1 : d > 0 ? kSide : kSide - 1; };
         const std::size_t base = from < 0 ? 0 : std::size_t(from) * BrickField::kSamples;
@@ -263,13 +343,16 @@ private:
                     const std::size_t at = base + std::size_t(((x & 7) * kSide + (y & 7)) * kSide + (z & 7));
                     const bool fresh = from >= 0 && mFresh[at];
                     any = any || fresh;
-                    padded[((x + 1) * kPadded + y + 1) * kPadded + z + 1] = fresh ? mNow[at] : Nearest{};
+                    const Nearest& there = fresh ? mNow[at] : kNone;
+                    const int to = ((x + 1) * kPadded + y + 1) * kPadded + z + 1;
+                    padded.distance[to] = there.distance;
+                    padded.face[to] = there.face;
                 }
         return any;
     }
 
     void relax(std::size_t slot) {
-        Nearest padded[kPadded * kPadded * kPadded];
+        Padded padded;
         const std::size_t base = slot * BrickField::kSamples;
         std::copy_n(&mNow[base], BrickField::kSamples, &mNext[base]);
         std::fill_n(&mNextFresh[base], BrickField::kSamples, std::uint8_t(0));
@@ -277,28 +360,31 @@ private:
         Nearest* out = &mNext[base];
         std::uint8_t* fresh = &mNextFresh[base];
         for (int x = 0; x < kSide; ++x)
-            for (int y = 0; y < kSide; ++y)
+            for (int y = 0; y < kSide; ++y) {
+                const int centre = ((x + 1) * kPadded + y + 1) * kPadded + 1;
+                std::uint32_t steps[kSide];
+                worthTrying(padded, centre, out, mHalfWidth, steps);
                 for (int z = 0; z < kSide; ++z, ++out, ++fresh)
-                    *fresh = relaxOne(mOrigins[slot] + Index3{x, y, z},
-                                      &padded[((x + 1) * kPadded + y + 1) * kPadded + z + 1], *out);
+                    *fresh = steps[z] &&
+                             relaxOne(mOrigins[slot] + Index3{x, y, z}, padded, centre + z, steps[z], *out);
+            }
     }
 
-    // Tries the neighbours' faces on a voxel; true if one is nearer.
-    bool relaxOne(const Index3& p, const Nearest* around, Nearest& best) const {
-        if (best.distance < 0.5f) return false;  // its own faces were all tried
+    // Tries the faces of those neighbours whose bits are set on a voxel; true if one is nearer.
+    bool relaxOne(const Index3& p, const Padded& around, int centre, std::uint32_t steps,
+                  Nearest& best) const {
         const std::uint32_t before = best.face;
-        std::uint32_t tried = best.face;
-        for (const Step& step : neighbourSteps()) {
-            const Nearest& other = around[step.offset];
-            // A face cannot be nearer here than its distance there less the step.
-            if (other.face == kNoFace || other.face == best.face || other.face == tried ||
-                other.distance - step.length > std::min(best.distance, mHalfWidth))
+        FacesTried tried;
+        for (; steps; steps &= steps - 1) {
+            const Step& step = neighbourSteps()[std::size_t(__builtin_ctz(steps))];
+            const std::uint32_t face = around.face[centre + step.offset];
+            if (face == best.face || around.distance[centre + step.offset] > best.distance ||
+                !tried.add(face))
                 continue;
-            tried = other.face;
-            if (isBeyond(mDiscs[other.face], {float(p.x), float(p.y), float(p.z)},
+            if (isBeyond(mDiscs[face], {float(p.x), float(p.y), float(p.z)},
                          std::min(best.distance, mHalfWidth + 1) + mSlack))
                 continue;
-            const Nearest candidate{distance(p, other.face), other.face};
+            const Nearest candidate{distance(p, face), face};
             if (better(candidate, best)) best = candidate;
         }
         return best.face != before;
@@ -314,7 +400,8 @@ private:
     Index3 mBricks;
     std::vector<std::int32_t> mSlots;
     std::vector<Index3> mOrigins;
-    std::vector<std::vector<std::uint32_t>> mFacesOf;
+    std::vector<std::size_t> mFirstFace;  // [slots + 1] where each brick's begin
+    std::vector<std::uint32_t> mFaces;    // [slot by slot]
     std::vector<Nearest> mNow, mNext;
     std::vector<std::uint8_t> mFresh, mNextFresh;  // changed in the last round
 };

@@ -47,35 +47,50 @@ float sharedConstant(const PatchMap& map, const Span span[3], const std::vector<
 struct BrickVotes {
     double sum[BrickField::kSamples] = {}, total[BrickField::kSamples] = {};
 
-    // @param values  first sample of `part`, steps from plane to plane and row to row of it
-    void add(PatchVote vote, const IndexBox& brick, const IndexBox& part, const Index3& origin,
-             const std::vector<double>& weight, double say, const float* values, std::ptrdiff_t plane,
-             std::ptrdiff_t step) {
-        const int length = part.max.z - part.min.z + 1;
-        for (int x = part.min.x; x <= part.max.x; ++x)
-            for (int y = part.min.y; y <= part.max.y; ++y) {
-                const double across =
-                    say * weight[std::size_t(x - origin.x)] * weight[std::size_t(y - origin.y)];
-                const double* along = weight.data() + (part.min.z - origin.z);
-                const float* value = values + (x - part.min.x) * plane + (y - part.min.y) * step;
-                const int i =
-                    ((x - brick.min.x) * kSide + y - brick.min.y) * kSide + part.min.z - brick.min.z;
-                double *sums = sum + i, *totals = total + i;
-                for (int k = 0; k < length; ++k) {
-                    const bool counts = vote == PatchVote::Blend || totals[k] == 0;
-                    const double w = counts ? across * along[k] : 0;
-                    sums[k] += w * double(value[k]);
-                    totals[k] += w;
-                }
-            }
-    }
-
     // Samples beyond the target, which are never read, go on from the one before.
     void write(float* samples) const {
         for (int i = 0; i < BrickField::kSamples; ++i)
             samples[i] = total[i] > 0 ? float(sum[i] / total[i]) : i > 0 ? samples[i - 1] : 0.f;
     }
 };
+
+// One block's say on a part of a brick.
+struct Say {
+    double weight;              // of the block
+    const double *x, *y, *z;    // weights along the part's axes
+    const float* values;        // first sample of the part
+    std::ptrdiff_t plane, row;  // steps from plane to plane and row to row of the values
+    Index3 size;                // of the part
+    int first;                  // its first sample in the brick
+};
+
+// The same bits with and without wide registers.
+__attribute__((target_clones("avx2", "default"))) void blend(const Say& say, double* sum, double* total) {
+    for (int x = 0; x < say.size.x; ++x)
+        for (int y = 0; y < say.size.y; ++y) {
+            const double across = say.weight * say.x[x] * say.y[y];
+            const double* along = say.z;
+            const float* value = say.values + x * say.plane + y * say.row;
+            double* sums = sum + say.first + (x * kSide + y) * kSide;
+            double* totals = total + say.first + (x * kSide + y) * kSide;
+            for (int k = 0; k < say.size.z; ++k) {
+                const double w = across * along[k];
+                sums[k] += w * double(value[k]);
+                totals[k] += w;
+            }
+        }
+}
+
+void fillOpen(const Say& say, double* sum, double* total) {
+    for (int x = 0; x < say.size.x; ++x)
+        for (int y = 0; y < say.size.y; ++y)
+            for (int k = 0; k < say.size.z; ++k) {
+                const int i = say.first + (x * kSide + y) * kSide + k;
+                if (total[i] != 0) continue;
+                total[i] = say.weight * say.x[x] * say.y[y] * say.z[k];
+                sum[i] = total[i] * double(say.values[x * say.plane + y * say.row + k]);
+            }
+}
 
 }  // namespace
 
@@ -157,6 +172,7 @@ BrickField voteThroughMap(const PatchMap& map,
     std::vector<double> weight(std::size_t(map.block));
     for (int i = 0; i < map.block; ++i) weight[std::size_t(i)] = double(voteWeight(map.block, i));
     const std::vector<float> constants = constantSources(map, exemplars, ctx);
+    const Index3 lattice = map.lattice();
     return BrickField::generate(
         IndexBox::fromSize(map.target), ctx, [&](const IndexBox& brick, float* samples) {
             Span span[3];
@@ -177,22 +193,26 @@ BrickField voteThroughMap(const PatchMap& map,
                         const Index3 origin = map.originOf({a, b, c});
                         const IndexBox part = brick.intersection(IndexBox::cube(origin, map.block));
                         if (part.empty()) continue;
-                        const std::size_t l = map.index({a, b, c});
-                        const Index3 from = map.source[l] + part.min - origin;
-                        const double say = map.weight.empty() ? 1 : double(map.weight[l]);
+                        const std::size_t l = (std::size_t(a) * std::size_t(lattice.y) + std::size_t(b)) *
+                                                  std::size_t(lattice.z) +
+                                              std::size_t(c);
                         const std::size_t e = std::size_t(map.exemplar[l]);
-                        if (dense) {
-                            const Index3 size = (*dense)[e].size;
-                            votes.add(map.vote, brick, part, origin, weight, say,
-                                      (*dense)[e].row(from.x, from.y, from.z),
-                                      std::ptrdiff_t(size.y) * size.z, size.z);
-                        } else {
-                            float values[BrickField::kSamples];
-                            const Index3 size = part.size();
-                            exemplars[e]->readBox(from, size, values);
-                            votes.add(map.vote, brick, part, origin, weight, say, values,
-                                      std::ptrdiff_t(size.y) * size.z, size.z);
-                        }
+                        const Index3 from = map.source[l] + part.min - origin, at = part.min - brick.min,
+                                     skip = part.min - origin;
+                        Say say;
+                        say.weight = map.weight.empty() ? 1 : double(map.weight[l]);
+                        say.x = weight.data() + skip.x;
+                        say.y = weight.data() + skip.y;
+                        say.z = weight.data() + skip.z;
+                        say.size = part.size();
+                        say.first = (at.x * kSide + at.y) * kSide + at.z;
+                        float values[BrickField::kSamples];
+                        const Index3 held = dense ? (*dense)[e].size : say.size;
+                        if (!dense) exemplars[e]->readBox(from, say.size, values);
+                        say.values = dense ? (*dense)[e].row(from.x, from.y, from.z) : values;
+                        say.plane = std::ptrdiff_t(held.y) * held.z;
+                        say.row = held.z;
+                        (map.vote == PatchVote::Blend ? blend : fillOpen)(say, votes.sum, votes.total);
                     }
             votes.write(samples);
         });

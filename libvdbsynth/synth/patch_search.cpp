@@ -17,6 +17,7 @@ constexpr float kOverusePenalty = 2;        // share added for every time more t
 constexpr float kCompanionDiscount = 0.1f;  // share off for each neighbour that the source goes on from
 constexpr float kAgreement = 0.01f;         // [voxels^2] cost of patches that agree
 constexpr std::size_t kPatchesAChunk = 64;
+constexpr std::int64_t kMostDense = 1 << 24;  // [voxels] of a field that are dense at once
 
 // How often each part of each exemplar is a source, in cells of a stride.
 class Uses {
@@ -73,18 +74,18 @@ struct Source {
 // Looks for the best source of one patch after another.
 class PatchSearch {
 public:
-    PatchSearch(const PatchLevel& level, const PatchMap& map, const Uses& uses)
-        : mLevel(level),
-          mMap(map),
-          mUses(uses),
-          mSamples(std::size_t(map.block) * std::size_t(map.block) * std::size_t(map.block)) {}
+    /// @param slab  planes of the field that patches are read from, and the first one's number
+    PatchSearch(const PatchLevel& level, const PatchMap& map, const Uses& uses, const DenseField& slab,
+                int firstPlane)
+        : mLevel(level), mMap(map), mUses(uses), mSlab(slab), mFirst(firstPlane), mLattice(map.lattice()) {}
 
     std::uint64_t compared() const { return mCompared; }
 
-    Source search(const BrickField& field, std::size_t i, int round, std::uint64_t seed) {
+    Source search(std::size_t i, int round, std::uint64_t seed) {
         mPlace = mMap.place(i);
         mOrigin = mMap.originOf(mPlace);
-        field.readBox(mOrigin, {mMap.block, mMap.block, mMap.block}, mSamples.data());
+        const std::ptrdiff_t row = mSlab.size.z;
+        mPatch = {mSlab.row(mOrigin.x - mFirst, mOrigin.y, mOrigin.z), row * mSlab.size.y, row};
         mBest = {};
         look(mMap.exemplar[i], mMap.source[i]);
         lookAtNeighbours(round % 3 == 2 ? 2 : 1);
@@ -101,10 +102,12 @@ private:
 
     void look(std::int32_t exemplar, const Index3& place) {
         const std::size_t e = std::size_t(exemplar);
+        // Neighbours that copy on name the same place again.
+        if (exemplar == mBest.exemplar && place == mBest.place && std::isfinite(mBest.dearness)) return;
         if (!sourcesFor(mLevel, mMap, e, mOrigin).contains(place) || !eligible(exemplar, place)) return;
         const float factor =
             mUses.penalty(e, place) * (1 - kCompanionDiscount * float(companions(exemplar, place)));
-        const float cost = patchDifference(mSamples.data(), mLevel.exemplars[e], place, mMap.block,
+        const float cost = patchDifference(mPatch, mLevel.exemplars[e], place, mMap.block,
                                            mBest.dearness / factor - kCostFloor);
         ++mCompared;
         const float dearness = (cost + kCostFloor) * factor;
@@ -113,14 +116,13 @@ private:
 
     // Neighbours whose sources lie to this one as they lie themselves: 0 to 6.
     int companions(std::int32_t exemplar, const Index3& place) const {
-        const Index3 lattice = mMap.lattice();
         int count = 0;
         for (int axis = 0; axis < 3; ++axis)
             for (const int side : {-1, 1}) {
                 Index3 other = mPlace;
                 other[axis] += side;
-                if (other[axis] < 0 || other[axis] >= lattice[axis]) continue;
-                const std::size_t k = mMap.index(other);
+                if (other[axis] < 0 || other[axis] >= mLattice[axis]) continue;
+                const std::size_t k = numberOf(other);
                 count +=
                     mMap.exemplar[k] == exemplar && mMap.source[k] - mMap.originOf(other) == place - mOrigin;
             }
@@ -128,13 +130,12 @@ private:
     }
 
     void lookAtNeighbours(int step) {
-        const Index3 lattice = mMap.lattice();
         for (int axis = 0; axis < 3; ++axis)
             for (const int side : {-step, step}) {
                 Index3 other = mPlace;
                 other[axis] += side;
-                if (other[axis] < 0 || other[axis] >= lattice[axis]) continue;
-                const std::size_t k = mMap.index(other);
+                if (other[axis] < 0 || other[axis] >= mLattice[axis]) continue;
+                const std::size_t k = numberOf(other);
                 look(mMap.exemplar[k], mMap.source[k] + mOrigin - mMap.originOf(other));
             }
     }
@@ -171,10 +172,18 @@ private:
         }
     }
 
+    std::size_t numberOf(const Index3& l) const {
+        return (std::size_t(l.x) * std::size_t(mLattice.y) + std::size_t(l.y)) * std::size_t(mLattice.z) +
+               std::size_t(l.z);
+    }
+
     const PatchLevel& mLevel;
     const PatchMap& mMap;
     const Uses& mUses;
-    std::vector<float> mSamples;
+    const DenseField& mSlab;
+    int mFirst;
+    Index3 mLattice;
+    PatchView mPatch{};
     Index3 mPlace, mOrigin;
     Source mBest;
     std::uint64_t mCompared = 0;
@@ -208,29 +217,31 @@ float weightFor(float cost) {
 
 }  // namespace
 
-__attribute__((target_clones("avx2", "default"))) float patchDifference(const float* patch,
+__attribute__((target_clones("avx2", "default"))) float patchDifference(const PatchView& patch,
                                                                         const DenseField& in,
                                                                         const Index3& corner, int n,
                                                                         float giveUp) {
     const float samples = float(n) * float(n) * float(n), limit = giveUp * samples;
+    const float* const source = in.row(corner.x, corner.y, corner.z);
+    const std::ptrdiff_t row = in.size.z, plane = row * in.size.y;
     float total = 0;
-    for (int x = 0; x < n; ++x) {
-        float lanes[8] = {};
-        for (int y = 0; y < n; ++y, patch += n) {
-            const float* row = in.row(corner.x + x, corner.y + y, corner.z);
-            int z = 0;
-            for (; z + 8 <= n; z += 8)
-                for (int k = 0; k < 8; ++k)
-                    lanes[k] += (patch[z + k] - row[z + k]) * (patch[z + k] - row[z + k]);
-            for (; z + 4 <= n; z += 4)
-                for (int k = 0; k < 4; ++k)
-                    lanes[k] += (patch[z + k] - row[z + k]) * (patch[z + k] - row[z + k]);
-            for (; z < n; ++z) lanes[z & 7] += (patch[z] - row[z]) * (patch[z] - row[z]);
+    for (const int first : {0, 2, 1, 3})
+        for (int x = first; x < n; x += 4) {
+            float lanes[8] = {};
+            for (int y = 0; y < n; ++y) {
+                const float* a = patch.first + x * patch.plane + y * patch.row;
+                const float* b = source + x * plane + y * row;
+                int z = 0;
+                for (; z + 8 <= n; z += 8)
+                    for (int k = 0; k < 8; ++k) lanes[k] += (a[z + k] - b[z + k]) * (a[z + k] - b[z + k]);
+                for (; z + 4 <= n; z += 4)
+                    for (int k = 0; k < 4; ++k) lanes[k] += (a[z + k] - b[z + k]) * (a[z + k] - b[z + k]);
+                for (; z < n; ++z) lanes[z & 7] += (a[z] - b[z]) * (a[z] - b[z]);
+            }
+            total += ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3])) +
+                     ((lanes[4] + lanes[5]) + (lanes[6] + lanes[7]));
+            if (total > limit) return total / samples;
         }
-        total +=
-            ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3])) + ((lanes[4] + lanes[5]) + (lanes[6] + lanes[7]));
-        if (total > limit) break;
-    }
     return total / samples;
 }
 
@@ -241,17 +252,30 @@ RoundCounts improveSources(const PatchLevel& level, const BrickField& field, int
     for (std::size_t i = 0; i < count; ++i) counted[i] = counted[i] && !level.keeps(i);
     const Uses uses(level, map, counted);
     std::vector<Source> found(count);
-    std::vector<std::uint64_t> compared((count + kPatchesAChunk - 1) / kPatchesAChunk, 0);
-    parallelFor(ctx, count, kPatchesAChunk, [&](std::size_t begin, std::size_t end) {
-        PatchSearch search(level, map, uses);
-        for (std::size_t i = begin; i < end; ++i)
-            if (level.keeps(i) || settled(level, map, field, i))
-                found[i] = {map.source[i], map.exemplar[i], 0, 0};
-            else
-                found[i] = search.search(field, i, round, ctx.seed);
-        compared[begin / kPatchesAChunk] = search.compared();
-    });
     RoundCounts counts;
+    const Index3 lattice = map.lattice(), size = field.box().size();
+    const std::size_t layer = std::size_t(lattice.y) * std::size_t(lattice.z);
+    const std::int64_t planes = kMostDense / (std::int64_t(size.y) * size.z);
+    const int layers = int(std::max<std::int64_t>(1, (planes - map.block) / map.stride));
+    for (int first = 0; first < lattice.x; first += layers) {
+        const int last = std::min(first + layers, lattice.x) - 1, plane = map.origin(0, first);
+        DenseField slab;
+        slab.size = {map.origin(0, last) + map.block - plane, size.y, size.z};
+        slab.samples.resize(std::size_t(slab.size.x) * std::size_t(size.y) * std::size_t(size.z));
+        field.readBox({plane, 0, 0}, slab.size, slab.samples.data());
+        const std::size_t begun = std::size_t(first) * layer, all = std::size_t(last - first + 1) * layer;
+        std::vector<std::uint64_t> compared((all + kPatchesAChunk - 1) / kPatchesAChunk, 0);
+        parallelFor(ctx, all, kPatchesAChunk, [&](std::size_t begin, std::size_t end) {
+            PatchSearch search(level, map, uses, slab, plane);
+            for (std::size_t i = begun + begin; i < begun + end; ++i)
+                if (level.keeps(i) || settled(level, map, field, i))
+                    found[i] = {map.source[i], map.exemplar[i], 0, 0};
+                else
+                    found[i] = search.search(i, round, ctx.seed);
+            compared[begin / kPatchesAChunk] = search.compared();
+        });
+        for (std::uint64_t n : compared) counts.compared += n;
+    }
     map.weight.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
         map.source[i] = found[i].place;
@@ -261,7 +285,6 @@ RoundCounts improveSources(const PatchLevel& level, const BrickField& field, int
     }
     copyRepeats(level, map);
     counts.patches = count;
-    for (std::uint64_t n : compared) counts.compared += n;
     return counts;
 }
 

@@ -3,10 +3,17 @@
 
 namespace vdbsynth {
 
-/// The mean squared difference of a patch of side n [n x n x n] and the one at a corner of a field. Once it
-/// is sure to exceed `giveUp` some larger value may come back. Eight sums side by side: the same bits on
-/// every processor.
-float patchDifference(const float* patch, const DenseField& in, const Index3& corner, int n, float giveUp);
+/// Where a patch's samples lie: its first, and the steps to the next plane (x) and the next row (y).
+struct PatchView {
+    const float* first;
+    std::ptrdiff_t plane, row;
+};
+
+/// The mean squared difference of a patch of side n and the one at a corner of a field. Once it is sure to
+/// exceed `giveUp` some larger value may come back; planes far apart come first, since they tell soonest.
+/// Eight sums side by side: the same bits on every processor.
+float patchDifference(const PatchView& patch, const DenseField& in, const Index3& corner, int n,
+                      float giveUp);
 
 struct RoundCounts {
     std::uint64_t patches = 0, compared = 0;

@@ -11,6 +11,7 @@
 #include "libvdbsynth/grid/mesh_distance.h"
 #include "libvdbsynth/grid/pyramid.h"
 #include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/wall.h"
 #include "libvdbsynth/vdb/zero_level.h"
 
@@ -18,17 +19,6 @@ namespace vdbsynth {
 namespace {
 
 constexpr Index3 kBrickSize{BrickField::kSide, BrickField::kSide, BrickField::kSide};
-
-// Voxels within `reach` of a mesh in index space.
-IndexBox boxAround(const Mesh& mesh, int reach) {
-    IndexBox box{{1 << 28, 1 << 28, 1 << 28}, {-(1 << 28), -(1 << 28), -(1 << 28)}};
-    for (const Vec3f& p : mesh.points)
-        for (int axis = 0; axis < 3; ++axis) {
-            box.min[axis] = std::min(box.min[axis], int(std::floor(p[axis])));
-            box.max[axis] = std::max(box.max[axis], int(std::ceil(p[axis])));
-        }
-    return box.expanded(reach);
-}
 
 // Distances with the signs of another field, both read at an offset; the result begins at 0.
 BrickField withSigns(const BrickField& distance, const Index3& distanceOffset, const BrickField& sign,
@@ -41,19 +31,106 @@ BrickField withSigns(const BrickField& distance, const Index3& distanceOffset, c
     });
 }
 
+using Tree = openvdb::FloatTree;
+using Leaf = Tree::LeafNodeType;
+
+// A copy of the leaves that touch a box, and of what is constant there.
+FloatGridPtr leavesAround(const openvdb::FloatGrid& grid, const IndexBox& box) {
+    FloatGridPtr copy = openvdb::FloatGrid::create(grid.background());
+    copy->setTransform(grid.transform().copy());
+    const openvdb::FloatGrid::ConstAccessor accessor = grid.getConstAccessor();
+    for (int x = box.min.x & ~7; x <= box.max.x; x += 8)
+        for (int y = box.min.y & ~7; y <= box.max.y; y += 8)
+            for (int z = box.min.z & ~7; z <= box.max.z; z += 8) {
+                const openvdb::Coord origin(x, y, z);
+                if (const Leaf* leaf = accessor.probeConstLeaf(origin)) {
+                    copy->tree().addLeaf(new Leaf(*leaf));
+                    continue;
+                }
+                float value;
+                const bool active = accessor.probeValue(origin, value);
+                if (active || value != grid.background()) copy->tree().addTile(1, origin, value, active);
+            }
+    return copy;
+}
+
+// A large box in parts that are rebuilt on their own, with sides of whole leaves: meshes and distances of all
+// of it at once take several times the memory of the result.
+std::vector<IndexBox> partsOf(const IndexBox& box) {
+    constexpr int kLongest = 224, kSide = 160;  // [voxels]
+    IndexBox whole;
+    Index3 side;
+    for (int axis = 0; axis < 3; ++axis) {
+        whole.min[axis] = box.min[axis] & ~7;
+        const int length = (box.max[axis] | 7) + 1 - whole.min[axis];
+        const int parts = length <= kLongest ? 1 : (length + kSide - 1) / kSide;
+        side[axis] = ((length + parts - 1) / parts + 7) & ~7;
+        whole.max[axis] = whole.min[axis] + length - 1;
+    }
+    std::vector<IndexBox> parts;
+    for (int x = whole.min.x; x <= whole.max.x; x += side.x)
+        for (int y = whole.min.y; y <= whole.max.y; y += side.y)
+            for (int z = whole.min.z; z <= whole.max.z; z += side.z)
+                parts.push_back(
+                    IndexBox{{x, y, z}, Index3{x, y, z} + side - Index3{1, 1, 1}}.intersection(whole));
+    return parts;
+}
+
+// The rebuilt level set inside a box, null where all of the field has one sign. The same bits whatever the
+// box: faces that could be nearest to any of its voxels, and what they are found through, lie within the
+// reach.
+FloatGridPtr rebuiltPart(const openvdb::FloatGrid& field, const IndexBox& part, bool whole, float halfWidth,
+                         const RunContext& ctx) {
+    const int rounds = int(std::ceil(halfWidth));
+    const float voxel = float(voxelSizeOf(field));
+    const Mesh mesh = whole ? zeroLevelInIndexSpace(field, 0, ctx)
+                            : zeroLevelInIndexSpace(*leavesAround(field, part.expanded(rounds + 5)), 0, ctx);
+    if (mesh.faceCount() == 0) {
+        if (field.getConstAccessor().getValue(toCoord(part.min)) >= 0) return nullptr;
+        return scatterBricks(BrickField(IndexBox::fromSize(part.size()), -halfWidth), part.min, voxel,
+                             halfWidth, ctx);
+    }
+    const BrickField distance = meshDistance(mesh, part.expanded(rounds + 1), halfWidth, ctx);
+    const BrickField sign = gatherBricks(field, part, 1 / voxel, kHalfWidth, ctx);
+    const BrickField values = withSigns(distance, part.min, sign, {0, 0, 0}, part.size(), ctx);
+    return scatterBricks(values, part.min, voxel, halfWidth, ctx);
+}
+
+// Moves the leaves and constant regions of a part, which lies in whole leaves, into the result.
+void take(openvdb::FloatGrid& from, openvdb::FloatGrid& to) {
+    auto tile = from.tree().cbeginValueOff();
+    tile.setMaxDepth(Tree::ValueOffCIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile)
+        if (*tile < 0) to.tree().addTile(tile.getLevel(), tile.getCoord(), *tile, false);
+    std::vector<Leaf*> leaves;
+    from.tree().stealNodes(leaves, from.background(), false);
+    for (Leaf* leaf : leaves) to.tree().addLeaf(leaf);
+}
+
 }  // namespace
 
 FloatGridPtr rebuildLevelSet(const openvdb::FloatGrid& field, float halfWidth, const std::string& what,
                              const RunContext& ctx) {
-    Stage stage(ctx, "rebuilding the narrow band", 2);
-    const Mesh mesh = zeroLevelInIndexSpace(field, 0, ctx);
-    if (mesh.faceCount() == 0) throw Error(ErrorCode::EmptyInput, what + " has no surface");
-    stage.advance();
-    const IndexBox box = boxAround(mesh, int(std::ceil(halfWidth)) + 1);
-    const BrickField distance = meshDistance(mesh, box, halfWidth, ctx);
-    const BrickField sign = gatherBricks(field, box, float(1 / voxelSizeOf(field)), kHalfWidth, ctx);
-    const BrickField values = withSigns(distance, box.min, sign, {0, 0, 0}, box.size(), ctx);
-    const FloatGridPtr grid = scatterBricks(values, box.min, float(voxelSizeOf(field)), halfWidth, ctx);
+    const openvdb::CoordBBox active = field.evalActiveVoxelBoundingBox();
+    if (active.empty()) throw Error(ErrorCode::EmptyInput, what + " has no surface");
+    const int reach = int(std::ceil(halfWidth)) + 1;
+    const std::vector<IndexBox> parts =
+        partsOf(IndexBox{fromCoord(active.min()), fromCoord(active.max())}.expanded(reach));
+    Stage stage(ctx, "rebuilding the narrow band", parts.size());
+    const FloatGridPtr grid = openvdb::FloatGrid::create(halfWidth * float(voxelSizeOf(field)));
+    constexpr std::size_t kBatch = 8;  // parts between two looks at the clock
+    for (std::size_t first = 0; first < parts.size(); first += kBatch) {
+        const std::size_t count = std::min(kBatch, parts.size() - first);
+        std::vector<FloatGridPtr> rebuilt(count);
+        parallelFor(ctx, count, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                rebuilt[i] = rebuiltPart(field, parts[first + i], parts.size() == 1, halfWidth, ctx);
+        });
+        for (const FloatGridPtr& part : rebuilt)
+            if (part) take(*part, *grid);
+        stage.advance(count);
+    }
+    if (grid->activeVoxelCount() == 0) throw Error(ErrorCode::EmptyInput, what + " has no surface");
     grid->setTransform(field.transform().copy());
     grid->setName(kSurfaceName);
     grid->setGridClass(openvdb::GRID_LEVEL_SET);
@@ -145,8 +222,9 @@ FloatGridPtr closeAndRebuild(const BrickField& field, const Index3& corner, cons
                              float halfWidth, const openvdb::FloatGrid& like, const std::string& what,
                              const RunContext& ctx) {
     const float limit = std::max(halfWidth, 3.f);
-    const BrickField closed = closeField(field, field.box(), cut, limit, ctx);
+    BrickField closed = closeField(field, field.box(), cut, limit, ctx);
     FloatGridPtr grid = scatterBricks(closed, corner, float(voxelSizeOf(like)), limit, ctx);
+    closed = BrickField();
     grid->setTransform(like.transform().copy());
     return rebuildLevelSet(*grid, halfWidth, what, ctx);
 }

@@ -13,7 +13,8 @@ TEST_CASE("patchDifference: the mean of squares, for any side, and what gives up
     for (int n : {4, 5, 8, 11, 12, 16, 19}) {
         std::vector<float> patch(std::size_t(n) * std::size_t(n) * std::size_t(n));
         noise.readBox({2, 3, 1}, {n, n, n}, patch.data());
-        CHECK(patchDifference(patch.data(), dense, {2, 3, 1}, n, 1e9f) == 0.f);
+        const PatchView view{patch.data(), n * n, n};
+        CHECK(patchDifference(view, dense, {2, 3, 1}, n, 1e9f) == 0.f);
         const Index3 at{17, 9, 20};
         double expected = 0;
         std::size_t i = 0;
@@ -23,9 +24,9 @@ TEST_CASE("patchDifference: the mean of squares, for any side, and what gives up
                     const double d = double(patch[i]) - double(noise.at(at + Index3{x, y, z}));
                     expected += d * d / double(patch.size());
                 }
-        const float cost = patchDifference(patch.data(), dense, at, n, 1e9f);
+        const float cost = patchDifference(view, dense, at, n, 1e9f);
         CHECK(double(cost) == Approx(expected).epsilon(1e-5));
-        CHECK(patchDifference(patch.data(), dense, at, n, cost / 3) > cost / 3);
+        CHECK(patchDifference(view, dense, at, n, cost / 3) > cost / 3);
     }
 }
 

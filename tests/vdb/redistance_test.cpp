@@ -43,6 +43,39 @@ TEST_CASE("rebuildLevelSet: a field of the wrong slope becomes a distance field"
     CHECK(double(close) > 0.98 * double(all));
 }
 
+TEST_CASE("rebuildLevelSet: what is rebuilt in parts is what it is in one", "[vdb][oracle]") {
+    // Two rods far apart: together they are long enough for parts, whose borders run through the first.
+    const auto rods = [](int length) {
+        return test::fieldFrom({length, 40, 40}, [](const Index3& p) {
+            const auto rod = [&](double begin, double end) {
+                const double along = std::max(begin - p.x, p.x - end);
+                return std::max(along, std::hypot(p.y - 19.5, p.z - 19.5) - 12 + 3 * std::sin(p.x * 0.2));
+            };
+            return float(std::clamp(std::min(rod(6, 200), rod(420, 470)), -3.0, 3.0));
+        });
+    };
+    const auto rebuilt = [&](int length) {
+        return rebuildLevelSet(*scatterBricks(rods(length), {-5, 3, 2}, 1.f, 3.f), 3.f, "rods");
+    };
+    const FloatGridPtr one = rebuilt(210), parts = rebuilt(480);
+    const auto expected = one->getConstAccessor(), got = parts->getConstAccessor();
+    std::size_t active = 0, wrong = 0;
+    for (int x = -8; x < 205; ++x)
+        for (int y = 0; y < 46; ++y)
+            for (int z = 0; z < 46; ++z) {
+                const openvdb::Coord at(x, y, z);
+                active += expected.isValueOn(at) ? 1 : 0;
+                wrong +=
+                    expected.getValue(at) != got.getValue(at) || expected.isValueOn(at) != got.isValueOn(at)
+                        ? 1
+                        : 0;
+            }
+    CHECK(active > 20000);
+    CHECK(wrong == 0);
+    CHECK(parts->activeVoxelCount() > one->activeVoxelCount());
+    CHECK(got.getValue({440, 22, 21}) == -3.f);
+}
+
 TEST_CASE("rebuildLevelSet: a cavity without a way out stays a cavity", "[vdb][property]") {
     const BrickField shell = test::fieldFrom({48, 48, 48}, [](const Index3& p) {
         const double d = length(Vec3d{p.x - 23.5, p.y - 23.5, p.z - 23.5});

@@ -280,7 +280,7 @@ FillResult fillHoles(const LevelSet& partial, const LevelSet& hole, const LevelS
             all.open.readBox(brick.min, brick.size(), samples);
             for (int i = 0; i < BrickField::kSamples; ++i) samples[i] = 1 - samples[i];
         });
-        synthesis.mask = &mask;
+        synthesis.masks = {&mask};
         field = std::make_shared<const BrickField>(all.known);
     }
     stage.advance();

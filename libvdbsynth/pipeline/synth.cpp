@@ -199,7 +199,7 @@ SynthResult synthesize(const LevelSet& exemplar, const SynthOptions& options, co
     if (options.exemplarMask) {
         mask = gatherMask(*options.exemplarMask, plan.map.exemplarBox, *exemplar.grid, ctx);
         if (plan.map.draft) mask = halvedMask(mask, ctx);
-        plan.block.mask = &mask;
+        plan.block.masks = {&mask};
     }
     BlockSynthesisResult synthesis = options.method == SynthesisMethod::Default
                                          ? optimizeTexture({field}, plan.block, ctx)

@@ -41,15 +41,17 @@ public:
         : mOptions(options), mContext(ctx) {}
 
     // Runs one pass. `coarse`: the result and map of the pass before, null for the first.
-    void run(const Pass& pass, const BrickField* coarse, const PatchMap* coarseMap, const BrickField* mask,
-             BrickField& field, PatchMap& map, const std::string& name) {
+    void run(const Pass& pass, const BrickField* coarse, const PatchMap* coarseMap,
+             const std::vector<const BrickField*>& masks, BrickField& field, PatchMap& map,
+             const std::string& name) {
         BlockIndexOptions indexOptions;
         indexOptions.block = pass.block;
-        indexOptions.mask = mask;
         Stage stage(mContext, name, 1);
         std::vector<BlockIndex> indices;
-        for (const auto& exemplar : pass.exemplars)
+        for (const auto& exemplar : pass.exemplars) {
+            indexOptions.mask = indices.size() < masks.size() ? masks[indices.size()] : nullptr;
             indices.push_back(BlockIndex::build(exemplar, indexOptions, mContext));
+        }
         std::uint64_t bytes = 0;
         for (const BlockIndex& index : indices) bytes += index.memoryBytes();
         mStats.indexBytes = std::max(mStats.indexBytes, bytes);
@@ -157,14 +159,19 @@ private:
         }
         Found best;
         bool any = false;
+        const int only = exemplarAt(mOptions, pass, origin + Index3{n / 2, n / 2, n / 2});
         for (std::size_t e = 0; e < indices.size(); ++e) {
+            if (only >= 0 && int(e) != only) continue;
             BlockQuery query;
             query.samples = samples.data();
             query.known = seeded ? nullptr : known.data();
             query.candidates = sourceBox(mOptions, pass, indices[e].exemplar().box().size(), n, origin);
             if (query.candidates.empty()) continue;
             if (!seeded && l == Index3{0, 0, 0}) {
-                if (e == 0 && drawFirst(indices[e], query, best)) return best;
+                if ((only >= 0 || e == 0) && drawFirst(indices[e], query, best)) {
+                    best.exemplar = std::int32_t(e);
+                    return best;
+                }
                 continue;
             }
             addHints(map, coarseMap, l, std::int32_t(e), query.hints);
@@ -195,7 +202,6 @@ private:
             const std::vector<BlockMatch> matches = index.match(drawn, 1, &found.counts);
             if (matches.empty()) continue;  // outside the mask
             found.match = matches.front();
-            found.exemplar = 0;
             return true;
         }
         const std::vector<BlockMatch> matches = index.match(query, 1, &found.counts);
@@ -276,11 +282,7 @@ BlockSynthesisResult synthesizeBlocks(const Fields& exemplars, const BlockSynthe
             for (auto& exemplar : pass.exemplars)
                 exemplar = std::make_shared<const BrickField>(quantized(*exemplar, ctx));
         }
-    std::vector<BrickField> masks;
-    if (options.mask) {
-        masks.push_back(*options.mask);
-        while (masks.size() < passes.size()) masks.push_back(halvedMask(masks.back(), ctx));
-    }
+    const std::vector<PassMasks> masks = masksOf(options, passes.size(), ctx);
     Synthesis synthesis(options, ctx);
     BlockSynthesisResult result;
     BrickField coarse;
@@ -290,8 +292,7 @@ BlockSynthesisResult synthesizeBlocks(const Fields& exemplars, const BlockSynthe
         PatchMap map;
         const bool first = p + 1 == passes.size();
         synthesis.run(
-            passes[p], first ? nullptr : &coarse, first ? nullptr : &coarseMap,
-            masks.empty() ? nullptr : &masks[p], field, map,
+            passes[p], first ? nullptr : &coarse, first ? nullptr : &coarseMap, masks[p].each, field, map,
             "synthesis pass " + std::to_string(passes.size() - p) + " of " + std::to_string(passes.size()));
         coarse = std::move(field);
         coarseMap = std::move(map);

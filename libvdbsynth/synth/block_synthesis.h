@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace vdbsynth {
@@ -36,7 +37,20 @@ struct BlockSynthesisOptions {
     Index3 around{0, 0, 0};
     int drift =
         0;  ///< how far a source may be from its own place along an axis that does not grow [voxels], >= 0
-    const BrickField* mask = nullptr;  ///< sources only from blocks where it is 1; box of the first exemplar
+    /// Which axes the target is made anew along; empty: those along which it is longer than the exemplar.
+    std::optional<std::array<bool, 3>> grows;
+    /// For each exemplar: sources only from blocks where it is 1; box of the exemplar. Null or missing:
+    /// everywhere.
+    std::vector<const BrickField*> masks;
+    /// The number of the exemplar that a block's source is in, at the block's middle, under 0 for any; box of
+    /// the target. Null: any everywhere.
+    const BrickField* which = nullptr;
+    /// A scalar over the target and the same scalar over every exemplar (optimizeTexture): sources are where
+    /// it is alike. A difference of the exemplars' standard deviation throughout a block costs `guideWeight`
+    /// [voxels^2]. Both or none.
+    const BrickField* guide = nullptr;
+    std::vector<const BrickField*> exemplarGuides;
+    float guideWeight = 1;
     /// A target of which a part is known (optimizeTexture): its samples, and 1 where they are open; boxes of
     /// the target. Sources may then come from anywhere along every axis. Both or none.
     const BrickField* known = nullptr;
@@ -57,6 +71,9 @@ struct BlockSynthesisResult {
     PatchMap map;
     BlockSynthesisStats stats;
 };
+
+/// True if the target is made anew along an axis along which an exemplar has `length` voxels.
+bool grows(const BlockSynthesisOptions& options, int axis, int length);
 
 /// The longest block that leaves the search a choice: half of the exemplar's shortest growing axis (a quarter
 /// at an object border, all of it where the axis does not grow), even, at most 256. Under 4: too small.

@@ -88,13 +88,13 @@ Filling bestFilling(const std::vector<BlockIndex>& indices, const std::vector<fl
 
 }  // namespace
 
-PatchMap fillOpen(const SynthesisPass& pass, const BrickField* mask, const BrickField& open,
-                  BrickField& field, const RunContext& ctx) {
+PatchMap fillOpen(const SynthesisPass& pass, const std::vector<const BrickField*>& masks,
+                  const BrickField& open, BrickField& field, const RunContext& ctx) {
     BlockIndexOptions indexOptions;
     indexOptions.block = pass.block;
     std::vector<BlockIndex> indices;
     for (const auto& exemplar : pass.exemplars) {
-        indexOptions.mask = indices.empty() ? mask : nullptr;
+        indexOptions.mask = indices.size() < masks.size() ? masks[indices.size()] : nullptr;
         indices.push_back(BlockIndex::build(exemplar, indexOptions, ctx));
     }
     PatchMap map;

@@ -10,12 +10,12 @@ namespace vdbsynth {
 /// the mask of what is known fills the rest, until nothing is open.
 /// @param field  [the pass's target] known samples count, open ones are replaced
 /// @param open   1 where a sample is open, else 0; the same box
-/// @param mask   of the first exemplar, or null
+/// @param masks  for each exemplar, null or missing: none
 /// @return the lattice of blocks, half a block apart, with the source of every block that was matched; blocks
 ///         without open samples have the source of the first that was
 /// @throw Error Unusable (no block of any exemplar is eligible), Memory, Cancelled
 /// @par Cost    O(open blocks * one search), for the coarsest pass   @par Repeats same bits for any threads
-PatchMap fillOpen(const SynthesisPass& pass, const BrickField* mask, const BrickField& open,
-                  BrickField& field, const RunContext& ctx = {});
+PatchMap fillOpen(const SynthesisPass& pass, const std::vector<const BrickField*>& masks,
+                  const BrickField& open, BrickField& field, const RunContext& ctx = {});
 
 }  // namespace vdbsynth

@@ -1,8 +1,11 @@
 #include "libvdbsynth/synth/patch_level.h"
 
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/base/random.h"
 #include "libvdbsynth/grid/pyramid.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace vdbsynth {
 namespace {
@@ -12,6 +15,9 @@ std::vector<Index3> placesInside(const BrickField& maskMeans, int side) {
     constexpr std::size_t kMost = 64;
     std::vector<Index3> all, some;
     const Index3 last = maskMeans.box().max - Index3{side - 1, side - 1, side - 1};
+    float value;
+    // Without a mask every place is inside.
+    if (maskMeans.constantIn(maskMeans.box(), value) && value == 1.f) return {{0, 0, 0}};
     for (int x = 0; x <= last.x; ++x)
         for (int y = 0; y <= last.y; ++y)
             for (int z = 0; z <= last.z; ++z)
@@ -42,39 +48,78 @@ std::vector<std::size_t> repeatsOf(const SynthesisPass& pass, const BlockSynthes
     return repeats;
 }
 
+// Adds an exemplar and what may be a source in it.
+void addExemplar(PatchLevel& level, const PatchMap& map, const BrickField& exemplar, const BrickField* mask,
+                 const RunContext& ctx) {
+    level.exemplars.push_back(denseField(exemplar));
+    level.maskMeans.push_back(mask ? slidingMean(*mask, map.block, ctx) : BrickField(exemplar.box(), 1.f));
+    level.fallbacks.push_back(placesInside(level.maskMeans.back(), map.block));
+    const Index3 size = exemplar.box().size();
+    double varied = 0;
+    float value;
+    for (int x = 0; x + map.block <= size.x; x += map.stride)
+        for (int y = 0; y + map.block <= size.y; y += map.stride)
+            for (int z = 0; z + map.block <= size.z; z += map.stride)
+                varied += level.maskMeans.back().inside({x, y, z}) == 1.f &&
+                          !exemplar.constantIn(IndexBox::cube({x, y, z}, map.block), value);
+    level.surfacePlaces.push_back(std::max(1.0, varied));
+}
+
 }  // namespace
 
 PatchLevel patchLevel(const SynthesisPass& pass, const BlockSynthesisOptions& options, const PatchMap& map,
-                      const BrickField* mask, const BrickField* open, const RunContext& ctx) {
+                      const std::vector<const BrickField*>& masks, const BrickField* open,
+                      const RunContext& ctx) {
     PatchLevel level;
     level.pass = &pass;
     level.options = &options;
-    double varied = 0;
-    for (const auto& exemplar : pass.exemplars) {
-        level.exemplars.push_back(denseField(*exemplar));
-        const Index3 size = exemplar->box().size();
-        float value;
-        for (int x = 0; x + map.block <= size.x; x += map.stride)
-            for (int y = 0; y + map.block <= size.y; y += map.stride)
-                for (int z = 0; z + map.block <= size.z; z += map.stride)
-                    varied += !exemplar->constantIn(IndexBox::cube({x, y, z}, map.block), value);
-    }
-    level.surfacePlaces = std::max(1.0, varied);
+    for (std::size_t e = 0; e < pass.exemplars.size(); ++e)
+        addExemplar(level, map, *pass.exemplars[e], e < masks.size() ? masks[e] : nullptr, ctx);
+    const Index3 half{map.block / 2, map.block / 2, map.block / 2};
+    for (std::size_t i = 0; options.which && i < map.source.size(); ++i)
+        level.only.push_back(exemplarAt(options, pass, map.originOf(map.place(i)) + half));
     level.repeats = repeatsOf(pass, options, map);
     for (std::size_t i = 0; open && i < map.source.size(); ++i) {
         float value;
         level.fixed.push_back(
             open->constantIn(IndexBox::cube(map.originOf(map.place(i)), map.block), value) && value == 0.f);
     }
-    if (mask) {
-        level.maskMeans.push_back(slidingMean(*mask, map.block, ctx));
-        level.fallbacks = placesInside(level.maskMeans.front(), map.block);
-    }
     return level;
 }
 
 IndexBox sourcesFor(const PatchLevel& level, const PatchMap& map, std::size_t e, const Index3& origin) {
     return sourceBox(*level.options, *level.pass, level.exemplars[e].size, map.block, origin);
+}
+
+void drawSources(const PatchLevel& level, PatchMap& map, const RunContext& ctx) {
+    constexpr int kDraws = 64;
+    constexpr std::uint32_t kPurpose = 0x64726177;
+    parallelFor(ctx, map.source.size(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Random random(ctx.seed, i, kPurpose);
+            const Index3 origin = map.originOf(map.place(i));
+            float least = std::numeric_limits<float>::infinity();
+            for (int draw = 0; draw < kDraws; ++draw) {
+                const std::uint32_t count = std::uint32_t(level.exemplars.size());
+                const std::int32_t e = level.only.empty() || level.only[i] < 0
+                                           ? std::int32_t(random.below(count))
+                                           : level.only[i];
+                const IndexBox box = sourcesFor(level, map, std::size_t(e), origin);
+                if (box.empty()) continue;
+                Index3 place;
+                for (int axis = 0; axis < 3; ++axis)
+                    place[axis] = box.min[axis] + int(random.below(std::uint32_t(box.size()[axis])));
+                if (!level.eligible(std::size_t(e), place)) continue;
+                const float cost =
+                    level.guidance.empty() ? 0.f : level.guidance.cost(origin, std::size_t(e), place);
+                if (cost >= least) continue;
+                least = cost;
+                map.source[i] = place;
+                map.exemplar[i] = e;
+                if (level.guidance.empty()) break;
+            }
+        }
+    });
 }
 
 void liftSources(const PatchLevel& level, const PatchMap& coarse, int factor, PatchMap& map) {
@@ -86,6 +131,7 @@ void liftSources(const PatchLevel& level, const PatchMap& coarse, int factor, Pa
         const Index3 strongest = strongestBlock(coarse, middle);
         const std::size_t from = coarse.index(strongest);
         map.exemplar[i] = coarse.exemplar[from];
+        if (!level.allows(i, map.exemplar[i])) continue;  // keeps what was drawn
         const IndexBox box = sourcesFor(level, map, std::size_t(map.exemplar[i]), origin);
         const Index3 source = origin + (coarse.source[from] - coarse.originOf(strongest)) * factor;
         for (int axis = 0; axis < 3; ++axis)

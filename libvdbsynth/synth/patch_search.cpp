@@ -31,26 +31,35 @@ public:
                 std::size_t(cells.size.x) * std::size_t(cells.size.y) * std::size_t(cells.size.z), 0);
             mCells.push_back(std::move(cells));
         }
-        double all = 0;
+        std::vector<double> uses(mCells.size(), 0);
         for (std::size_t i = 0; i < map.source.size(); ++i)
             if (varied[i]) {
                 Cells& cells = mCells[std::size_t(map.exemplar[i])];
                 cells.count[cellOf(cells, map.source[i])] += 1;
-                all += 1;
+                uses[std::size_t(map.exemplar[i])] += 1;
             }
-        mExpected = float(std::max(0.5, all / std::max(1.0, level.surfacePlaces)));
+        // Exemplars that have a place of their own are not expected to be used alike.
+        double all = 0, places = 0;
+        for (std::size_t e = 0; e < uses.size(); ++e) {
+            all += uses[e];
+            places += level.surfacePlaces[e];
+        }
+        for (std::size_t e = 0; e < uses.size(); ++e)
+            mCells[e].expected =
+                float(std::max(0.5, level.only.empty() ? all / places : uses[e] / level.surfacePlaces[e]));
     }
 
     // What a source's cost is multiplied by.
     float penalty(std::size_t exemplar, const Index3& source) const {
         const Cells& cells = mCells[exemplar];
-        return 1 + kOverusePenalty * std::max(0.f, cells.count[cellOf(cells, source)] / mExpected - 1);
+        return 1 + kOverusePenalty * std::max(0.f, cells.count[cellOf(cells, source)] / cells.expected - 1);
     }
 
 private:
     struct Cells {
         Index3 size;
         std::vector<float> count;
+        float expected = 1;
     };
     std::size_t cellOf(const Cells& cells, const Index3& source) const {
         return (std::size_t((source.x + mHalf) / mSide) * std::size_t(cells.size.y) +
@@ -61,7 +70,6 @@ private:
 
     int mHalf, mSide;
     std::vector<Cells> mCells;
-    float mExpected = 1;
 };
 
 struct Source {
@@ -82,6 +90,7 @@ public:
     std::uint64_t compared() const { return mCompared; }
 
     Source search(std::size_t i, int round, std::uint64_t seed) {
+        mNumber = i;
         mPlace = mMap.place(i);
         mOrigin = mMap.originOf(mPlace);
         const std::ptrdiff_t row = mSlab.size.z;
@@ -96,21 +105,21 @@ public:
     }
 
 private:
-    bool eligible(std::int32_t exemplar, const Index3& place) const {
-        return mLevel.maskMeans.empty() || exemplar != 0 || mLevel.maskMeans.front().inside(place) == 1.f;
-    }
-
     void look(std::int32_t exemplar, const Index3& place) {
         const std::size_t e = std::size_t(exemplar);
         // Neighbours that copy on name the same place again.
         if (exemplar == mBest.exemplar && place == mBest.place && std::isfinite(mBest.dearness)) return;
-        if (!sourcesFor(mLevel, mMap, e, mOrigin).contains(place) || !eligible(exemplar, place)) return;
+        if (!mLevel.allows(mNumber, exemplar) || !sourcesFor(mLevel, mMap, e, mOrigin).contains(place) ||
+            !mLevel.eligible(e, place))
+            return;
         const float factor =
             mUses.penalty(e, place) * (1 - kCompanionDiscount * float(companions(exemplar, place)));
-        const float cost = patchDifference(mPatch, mLevel.exemplars[e], place, mMap.block,
-                                           mBest.dearness / factor - kCostFloor);
+        const float guided = mLevel.guidance.empty() ? 0.f : mLevel.guidance.cost(mOrigin, e, place);
+        const float giveUp = mBest.dearness / factor - kCostFloor - guided;
+        if (giveUp < 0) return;
+        const float cost = patchDifference(mPatch, mLevel.exemplars[e], place, mMap.block, giveUp);
         ++mCompared;
-        const float dearness = (cost + kCostFloor) * factor;
+        const float dearness = (cost + guided + kCostFloor) * factor;
         if (dearness < mBest.dearness) mBest = {place, exemplar, cost, dearness};
     }
 
@@ -145,6 +154,7 @@ private:
         Random random(seed, i, kDrawPurpose + std::uint32_t(round));
         const std::uint32_t count = std::uint32_t(mLevel.exemplars.size());
         std::int32_t exemplar = count > 1 ? std::int32_t(random.below(count)) : 0;
+        if (!mLevel.only.empty() && mLevel.only[i] >= 0) exemplar = mLevel.only[i];
         const Index3 size = sourcesFor(mLevel, mMap, std::size_t(exemplar), mOrigin).size();
         for (int radius = std::max({size.x, size.y, size.z}); radius >= 1; radius /= 2) {
             const IndexBox box = sourcesFor(mLevel, mMap, std::size_t(exemplar), mOrigin);
@@ -162,9 +172,11 @@ private:
     }
 
     void lookEverywhere() {
-        for (const Index3& place : mLevel.fallbacks) look(0, place);
+        for (std::size_t e = 0; e < mLevel.exemplars.size(); ++e)
+            for (const Index3& place : mLevel.fallbacks[e]) look(std::int32_t(e), place);
         if (std::isfinite(mBest.dearness)) return;
         for (std::size_t e = 0; e < mLevel.exemplars.size(); ++e) {
+            if (!mLevel.allows(mNumber, std::int32_t(e))) continue;
             const IndexBox box = sourcesFor(mLevel, mMap, e, mOrigin);
             for (int x = box.min.x; x <= box.max.x; ++x)
                 for (int y = box.min.y; y <= box.max.y; ++y)
@@ -184,6 +196,7 @@ private:
     int mFirst;
     Index3 mLattice;
     PatchView mPatch{};
+    std::size_t mNumber = 0;
     Index3 mPlace, mOrigin;
     Source mBest;
     std::uint64_t mCompared = 0;
@@ -203,7 +216,8 @@ std::vector<std::uint8_t> variedPatches(const PatchMap& map, const BrickField& f
 // True where a patch and its source are one and the same value: nothing is nearer.
 bool settled(const PatchLevel& level, const PatchMap& map, const BrickField& field, std::size_t i) {
     float own, source;
-    return field.constantIn(IndexBox::cube(map.originOf(map.place(i)), map.block), own) &&
+    return level.allows(i, map.exemplar[i]) && level.guidance.empty() &&
+           field.constantIn(IndexBox::cube(map.originOf(map.place(i)), map.block), own) &&
            level.pass->exemplars[std::size_t(map.exemplar[i])]->constantIn(
                IndexBox::cube(map.source[i], map.block), source) &&
            own == source;

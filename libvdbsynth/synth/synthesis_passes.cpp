@@ -1,6 +1,7 @@
 #include "libvdbsynth/synth/synthesis_passes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "libvdbsynth/base/error.h"
@@ -20,14 +21,18 @@ Index3 halfOf(const Index3& n) {
 
 }  // namespace
 
+bool grows(const BlockSynthesisOptions& options, int axis, int length) {
+    if (options.open) return true;
+    return options.grows ? (*options.grows)[std::size_t(axis)] : options.size[axis] != length;
+}
+
 int longestBlock(const Index3& exemplar, const BlockSynthesisOptions& options) {
     int longest = 256;
     for (int axis = 0; axis < 3; ++axis) {
-        const bool grows = options.open || exemplar[axis] != options.size[axis];
-        longest =
-            std::min(longest, !grows                                                ? exemplar[axis]
-                              : options.border[std::size_t(axis)] == Border::Object ? exemplar[axis] / 4
-                                                                                    : exemplar[axis] / 2);
+        const bool object = options.border[std::size_t(axis)] == Border::Object;
+        const int room =
+            grows(options, axis, exemplar[axis]) ? exemplar[axis] / (object ? 4 : 2) : exemplar[axis];
+        longest = std::min(longest, room);
     }
     return longest / 2 * 2;
 }
@@ -40,7 +45,7 @@ IndexBox sourceBox(const BlockSynthesisOptions& options, const SynthesisPass& pa
         int low = 0, high = length - side;
         if (options.open) {
             // anywhere
-        } else if (length == target) {
+        } else if (options.grows ? !(*options.grows)[std::size_t(axis)] : length == target) {
             const int drift = options.drift / pass.scale;
             low = std::max(low, at - drift);
             high = std::min(high, at + drift);
@@ -98,6 +103,27 @@ std::vector<SynthesisPass> planPasses(const Fields& exemplars, const BlockSynthe
     return passes;
 }
 
+int exemplarAt(const BlockSynthesisOptions& options, const SynthesisPass& pass, const Index3& middle) {
+    if (!options.which) return -1;
+    const Index3 half{pass.scale / 2, pass.scale / 2, pass.scale / 2};
+    return int(std::lround(options.which->at(middle * pass.scale + half)));
+}
+
+std::vector<PassMasks> masksOf(const BlockSynthesisOptions& options, std::size_t passes,
+                               const RunContext& ctx) {
+    std::vector<PassMasks> all(passes);
+    for (std::size_t p = 0; p < passes; ++p)
+        for (std::size_t e = 0; e < options.masks.size(); ++e) {
+            std::shared_ptr<const BrickField> mask;
+            if (options.masks[e])
+                mask = p == 0 ? std::make_shared<const BrickField>(*options.masks[e])
+                              : std::make_shared<const BrickField>(halvedMask(*all[p - 1].held[e], ctx));
+            all[p].held.push_back(mask);
+            all[p].each.push_back(mask.get());
+        }
+    return all;
+}
+
 void validateSynthesis(const std::vector<Index3>& exemplars, const BlockSynthesisOptions& options) {
     if (exemplars.empty()) throw Error(ErrorCode::InvalidOption, "synthesis needs at least one exemplar");
     const std::string size = std::to_string(options.size.x) + "," + std::to_string(options.size.y) + "," +
@@ -115,7 +141,7 @@ void validateSynthesis(const std::vector<Index3>& exemplars, const BlockSynthesi
     for (const Index3& exemplar : exemplars)
         for (int axis = 0; axis < 3; ++axis) {
             const int length = exemplar[axis];
-            if (!options.open && options.size[axis] < length)
+            if (!options.open && !options.grows && options.size[axis] < length)
                 throw Error(ErrorCode::Unusable, "--size " + size +
                                                      ": smaller than the exemplar's domain along " +
                                                      char('x' + axis) + " (" + std::to_string(length) +
@@ -125,7 +151,7 @@ void validateSynthesis(const std::vector<Index3>& exemplars, const BlockSynthesi
                                                      ": larger than the exemplar, which has " +
                                                      std::to_string(length) + " voxels along " +
                                                      char('x' + axis));
-            if (options.block > 0 && options.size[axis] != length &&
+            if (options.block > 0 && grows(options, axis, length) &&
                 options.border[std::size_t(axis)] == Border::Object && options.block * 4 > length)
                 throw Error(ErrorCode::Unusable,
                             "--block " + std::to_string(options.block) +

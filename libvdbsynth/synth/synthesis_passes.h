@@ -20,6 +20,20 @@ struct SynthesisPass {
 IndexBox sourceBox(const BlockSynthesisOptions& options, const SynthesisPass& pass, const Index3& exemplar,
                    int side, const Index3& origin);
 
+/// The one exemplar that a block whose middle is at a voxel of the pass's target takes its source from, or
+/// -1.
+int exemplarAt(const BlockSynthesisOptions& options, const SynthesisPass& pass, const Index3& middle);
+
+/// The masks of all exemplars at the scale of one pass; null: none.
+struct PassMasks {
+    std::vector<std::shared_ptr<const BrickField>> held;
+    std::vector<const BrickField*> each;
+};
+
+/// For each pass, finest first. Empty entries where there are no masks.
+std::vector<PassMasks> masksOf(const BlockSynthesisOptions& options, std::size_t passes,
+                               const RunContext& ctx);
+
 /// The passes, finest first, at most `levels`; coarser ones end where a block would fall under four samples,
 /// or the period of a target that tiles is odd. A note says so if the options ask for more.
 std::vector<SynthesisPass> planPasses(const std::vector<std::shared_ptr<const BrickField>>& exemplars,

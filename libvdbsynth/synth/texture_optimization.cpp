@@ -54,8 +54,8 @@ PatchMap emptyMap(const Pass& pass, int block, const BlockSynthesisOptions& opti
 }
 
 // Blocks in raster order over the coarsest pass: a first arrangement of what is large.
-PatchMap firstArrangement(const Pass& pass, const BlockSynthesisOptions& options, const BrickField* mask,
-                          const RunContext& ctx) {
+PatchMap firstArrangement(const Pass& pass, const BlockSynthesisOptions& options,
+                          const std::vector<const BrickField*>& masks, const RunContext& ctx) {
     BlockSynthesisOptions first = options;
     first.size = pass.target;
     first.levels = 1;
@@ -63,14 +63,27 @@ PatchMap firstArrangement(const Pass& pass, const BlockSynthesisOptions& options
         if (border == Border::Tile) border = Border::Cut;
     first.block = pass.block;
     first.drift = options.drift / pass.scale;
-    first.mask = mask;
+    first.masks = masks;
+    first.guide = nullptr;
+    BrickField which;
+    if (options.which) {
+        which = BrickField::generate(IndexBox::fromSize(pass.target), ctx,
+                                     [&](const IndexBox& brick, float* samples) {
+                                         for (int x = brick.min.x; x <= brick.max.x; ++x)
+                                             for (int y = brick.min.y; y <= brick.max.y; ++y)
+                                                 for (int z = brick.min.z; z <= brick.max.z; ++z)
+                                                     *samples++ = float(exemplarAt(options, pass, {x, y, z}));
+                                     });
+        first.which = &which;
+    }
     return synthesizeBlocks(pass.exemplars, first, ctx).map;
 }
 
 // What each pass has of a mask and of a target that is known in part, finest first.
 struct Given {
-    std::vector<BrickField> masks, known, open;
-    const BrickField* mask(std::size_t p) const { return masks.empty() ? nullptr : &masks[p]; }
+    std::vector<PassMasks> masks;
+    GuideScales guides;
+    std::vector<BrickField> known, open;
     const BrickField* openAt(std::size_t p) const { return open.empty() ? nullptr : &open[p]; }
 };
 
@@ -83,9 +96,8 @@ BrickField exchanged(const BrickField& field, const RunContext& ctx) {
 
 Given givenFor(const BlockSynthesisOptions& options, std::size_t passes, const RunContext& ctx) {
     Given given;
-    if (options.mask) given.masks.push_back(*options.mask);
-    while (options.mask && given.masks.size() < passes)
-        given.masks.push_back(halvedMask(given.masks.back(), ctx));
+    given.masks = masksOf(options, passes, ctx);
+    given.guides = guideScales(options, passes, ctx);
     if (!options.open) return given;
     given.known.push_back(*options.known);
     given.open.push_back(*options.open);
@@ -110,7 +122,9 @@ BrickField withKnown(const Given& given, std::size_t p, BrickField voted, const 
     });
 }
 
-bool anyBlockInside(const BrickField& mask, int block, const RunContext& ctx) {
+bool anyBlockInside(const BrickField* masked, int block, const RunContext& ctx) {
+    if (!masked) return true;
+    const BrickField& mask = *masked;
     const IndexBox box = mask.box();
     const BrickField means = slidingMean(mask, block, ctx);
     for (int x = box.min.x; x + block - 1 <= box.max.x; ++x)
@@ -120,14 +134,20 @@ bool anyBlockInside(const BrickField& mask, int block, const RunContext& ctx) {
     return false;
 }
 
+bool everyMaskHasRoom(const PassMasks& masks, int block, const RunContext& ctx) {
+    for (const BrickField* mask : masks.each)
+        if (!anyBlockInside(mask, block, ctx)) return false;
+    return true;
+}
+
 // Smaller blocks, and fewer passes, where a mask leaves no room for the planned ones.
 void fitToMask(const Given& given, bool blockGiven, std::vector<Pass>& passes, const RunContext& ctx) {
-    for (std::size_t p = passes.size(); !given.masks.empty() && p-- > 0;) {
+    for (std::size_t p = passes.size(); p-- > 0;) {
         int& block = passes[p].block;
         const bool fixed = p == 0 && blockGiven;
-        while (!fixed && block >= 8 && !anyBlockInside(given.masks[p], block, ctx)) block /= 2;
+        while (!fixed && block >= 8 && !everyMaskHasRoom(given.masks[p], block, ctx)) block /= 2;
         const bool last = p + 1 == passes.size();
-        if (!last || anyBlockInside(given.masks[p], block, ctx)) continue;
+        if (!last || everyMaskHasRoom(given.masks[p], block, ctx)) continue;
         if (p > 0)
             passes.pop_back();
         else
@@ -163,7 +183,10 @@ private:
     void arrange() {
         const std::size_t last = mPasses.size() - 1;
         if (mGiven.open.empty()) {
-            mMap = firstArrangement(mPasses[last], mOptions, mGiven.mask(last), mContext);
+            // What guides is not known to the search for exact blocks.
+            mMap = mOptions.guide
+                       ? emptyMap(mPasses[last], mPasses[last].block, mOptions)
+                       : firstArrangement(mPasses[last], mOptions, mGiven.masks[last].each, mContext);
             return;
         }
         mField = mGiven.known[last];
@@ -173,7 +196,7 @@ private:
             return;
         }
         Stage stage(mContext, "filling what is open", 1);
-        mMap = fillOpen(mPasses[last], mGiven.mask(last), mGiven.open[last], mField, mContext);
+        mMap = fillOpen(mPasses[last], mGiven.masks[last].each, mGiven.open[last], mField, mContext);
         stage.advance();
     }
 
@@ -182,8 +205,13 @@ private:
         const bool first = p + 1 == mPasses.size();
         PatchMap map =
             emptyMap(pass, p == 0 || first ? pass.block : std::max(4, pass.block * 3 / 4), mOptions);
-        const PatchLevel level = patchLevel(pass, mOptions, map, mGiven.mask(p), mGiven.openAt(p), mContext);
-        liftSources(level, mMap, first ? 1 : 2, map);
+        PatchLevel level = patchLevel(pass, mOptions, map, mGiven.masks[p].each, mGiven.openAt(p), mContext);
+        if (mOptions.guide)
+            level.guidance = Guidance(mGiven.guides.target[p], mGiven.guides.exemplars[p],
+                                      mGiven.guides.weight, map.block, mContext);
+        const bool guidedStart = first && mOptions.guide;
+        if (mOptions.which || guidedStart) drawSources(level, map, mContext);
+        if (!guidedStart) liftSources(level, mMap, first ? 1 : 2, map);
         copyRepeats(level, map);
         // Sources lifted from where nothing is open say nothing, so what is open begins as the coarse result.
         if (!mGiven.open.empty() && !first) mField = doubled(mField, pass.target, mContext);

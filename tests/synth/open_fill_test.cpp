@@ -17,15 +17,14 @@ TEST_CASE("fillOpen: a hole in what repeats comes back exactly, and known sample
         test::fieldFrom({40, 40, 40}, [&](const Index3& p) { return hole.contains(p) ? 1.f : 0.f; });
     BrickField field =
         test::fieldFrom({40, 40, 40}, [&](const Index3& p) { return hole.contains(p) ? 99.f : whole.at(p); });
-    const PatchMap map = fillOpen(pass, nullptr, open, field);
+    const PatchMap map = fillOpen(pass, {}, open, field);
     CHECK(test::samplesOf(field) == test::samplesOf(whole));
     CHECK(map.block == 8);
     // A mask without room is an error, not a guess.
     const BrickField nothing(IndexBox::fromSize({32, 32, 32}), 0.f);
-    CHECK(test::thrownBy([&] { fillOpen(pass, &nothing, open, field); }).code == int(ErrorCode::Unusable));
+    CHECK(test::thrownBy([&] { fillOpen(pass, {&nothing}, open, field); }).code == int(ErrorCode::Unusable));
     const std::atomic<bool> cancel{true};
     RunContext ctx;
     ctx.cancel = &cancel;
-    CHECK(test::thrownBy([&] { fillOpen(pass, nullptr, open, field, ctx); }).code ==
-          int(ErrorCode::Cancelled));
+    CHECK(test::thrownBy([&] { fillOpen(pass, {}, open, field, ctx); }).code == int(ErrorCode::Cancelled));
 }

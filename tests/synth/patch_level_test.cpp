@@ -24,7 +24,7 @@ TEST_CASE("liftSources: a coarse copy becomes a fine one, within the exemplar", 
     for (std::size_t i = 0; i < coarse.source.size(); ++i)
         for (int axis = 0; axis < 3; ++axis)
             coarse.source[i][axis] = std::clamp(coarse.originOf(coarse.place(i))[axis] + shift[axis], 0, 18);
-    const PatchLevel level = patchLevel(pass, options, fine, nullptr, nullptr, {});
+    const PatchLevel level = patchLevel(pass, options, fine, {}, nullptr, {});
     liftSources(level, coarse, 2, fine);
     for (std::size_t i = 0; i < fine.source.size(); ++i) {
         const Index3 l = fine.place(i), origin = fine.originOf(l);
@@ -50,7 +50,7 @@ TEST_CASE("patchLevel: what is fixed, what repeats, where a mask leaves places",
         test::fieldFrom({40, 24, 24}, [](const Index3& p) { return p.y >= 16 ? 1.f : 0.f; });
     const BrickField mask =
         test::fieldFrom({24, 24, 24}, [](const Index3& p) { return p.z < 9 ? 1.f : 0.f; });
-    const PatchLevel level = patchLevel(pass, options, map, &mask, &open, {});
+    const PatchLevel level = patchLevel(pass, options, map, {&mask}, &open, {});
     REQUIRE(level.repeats.size() == map.source.size());
     for (std::size_t i = 0; i < map.source.size(); ++i) {
         const Index3 origin = map.originOf(map.place(i));
@@ -62,8 +62,8 @@ TEST_CASE("patchLevel: what is fixed, what repeats, where a mask leaves places",
         CHECK((other.x >= 8 && other.x < 32));
         CHECK((other.y == origin.y && other.z == origin.z));
     }
-    REQUIRE_FALSE(level.fallbacks.empty());
-    for (const Index3& p : level.fallbacks) CHECK(p.z <= 1);
+    REQUIRE_FALSE(level.fallbacks[0].empty());
+    for (const Index3& p : level.fallbacks[0]) CHECK(p.z <= 1);
     for (std::size_t i = 0; i < map.source.size(); ++i) map.source[i] = map.place(i);
     copyRepeats(level, map);
     for (std::size_t i = 0; i < map.source.size(); ++i) CHECK(map.source[i] == map.place(level.repeats[i]));

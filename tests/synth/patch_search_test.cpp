@@ -43,7 +43,7 @@ TEST_CASE("improveSources: finds the shift of a copy from sources that are all w
     map.block = 8;
     map.stride = 2;
     map.allocate();
-    const PatchLevel level = patchLevel(pass, options, map, nullptr, nullptr, {});
+    const PatchLevel level = patchLevel(pass, options, map, {}, nullptr, {});
     CHECK(sourcesFor(level, map, 0, {0, 0, 0}) == IndexBox{{0, 0, 0}, {40, 40, 40}});
     double before = 1e9;
     for (int round = 0; round < 20; ++round) {

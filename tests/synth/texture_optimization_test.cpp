@@ -92,14 +92,32 @@ TEST_CASE("optimizeTexture: a mask keeps sources inside it, two exemplars are bo
     const BrickField mask =
         test::fieldFrom({40, 40, 40}, [](const Index3& p) { return p.x < 24 ? 1.f : 0.f; });
     BlockSynthesisOptions options = optionsFor({64, 64, 40}, 8, 2);
-    options.mask = &mask;
+    options.masks = {&mask};
     for (const Index3& source : optimizeTexture({exemplar}, options).map.source) REQUIRE(source.x + 8 <= 24);
-    options.mask = nullptr;
+    options.masks.clear();
     const auto other = shared(test::ballsField({40, 40, 40}, 7, 6.f, 20));
     const PatchMap both = optimizeTexture({exemplar, other}, options).map;
     const auto second = std::count(both.exemplar.begin(), both.exemplar.end(), 1);
     CHECK(second > std::ptrdiff_t(both.exemplar.size() / 10));
     CHECK(second < std::ptrdiff_t(both.exemplar.size() * 9 / 10));
+}
+
+TEST_CASE("optimizeTexture: each place from the exemplar that is asked for there", "[synth][property]") {
+    const auto one = shared(test::ballsField({40, 40, 40}, 6, 6.f, 20)),
+               two = shared(test::ballsField({36, 48, 40}, 7, 6.f, 20));
+    const BrickField which = test::fieldFrom({64, 64, 40}, [](const Index3& p) {
+        return p.x + p.y < 64 ? 0.f : p.y < 40 ? 1.f : -1.f;
+    });
+    BlockSynthesisOptions options = optionsFor({64, 64, 40}, 8, 2);
+    options.which = &which;
+    options.grows = std::array<bool, 3>{true, true, false};
+    const PatchMap map = optimizeTexture({one, two}, options).map;
+    for (std::size_t i = 0; i < map.source.size(); ++i) {
+        const Index3 middle = map.originOf(map.place(i)) + Index3{4, 4, 4};
+        const int asked = int(which.at(middle));
+        if (asked >= 0) REQUIRE(map.exemplar[i] == asked);
+        REQUIRE(map.source[i].z == middle.z - 4);
+    }
 }
 
 TEST_CASE("optimizeTexture: same bits for any number of threads, other seeds differ",

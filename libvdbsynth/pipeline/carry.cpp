@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace vdbsynth {
 namespace {
@@ -17,21 +18,35 @@ using Carriable =
 struct Link {
     openvdb::Coord to;
     openvdb::Vec3d from;  // world, in the exemplar
+    const ExemplarVariant* variant;
 };
 
-std::vector<Link> linksOf(const SourceMap& map, const openvdb::FloatGrid& exemplar,
-                          const openvdb::FloatGrid& result) {
-    std::vector<Link> links;
+// For each exemplar the voxels of the result that are read from it.
+std::vector<std::vector<Link>> linksOf(const SourceMap& map, const std::vector<const LevelSet*>& exemplars,
+                                       const openvdb::FloatGrid& result) {
+    std::vector<std::vector<Link>> links(exemplars.size());
     for (auto it = result.cbeginValueOn(); it; ++it) {
         const Index3 voxel = fromCoord(it.getCoord());
         if (!map.targetDomain.contains(voxel)) continue;
-        const Index3 local = voxel - map.targetBox.min, block = strongestBlock(map.patches, local);
-        const Index3 from = map.patches.source[map.patches.index(block)] + local -
-                            map.patches.originOf(block) + map.exemplarBox.min;
-        links.push_back(
-            {it.getCoord(), exemplar.transform().indexToWorld(openvdb::Vec3d(from.x, from.y, from.z))});
+        const SourceVoxel source = strongestSource(map, voxel);
+        const openvdb::Vec3d from(source.voxel.x, source.voxel.y, source.voxel.z);
+        links[source.exemplar].push_back({it.getCoord(),
+                                          exemplars[source.exemplar]->grid->transform().indexToWorld(from),
+                                          source.variant});
     }
     return links;
+}
+
+// A vector that has a direction, turned as its place is.
+template <typename Value>
+Value turned(const Value& value, const Affine& turn) {
+    if constexpr (std::is_same_v<Value, openvdb::Vec3f> || std::is_same_v<Value, openvdb::Vec3d>) {
+        using Element = typename Value::value_type;
+        const Vec3d to = transformed(turn, {double(value.x()), double(value.y()), double(value.z())});
+        return Value(Element(to.x), Element(to.y), Element(to.z));
+    } else {
+        return value;
+    }
 }
 
 // Steps to voxels within two, nearest first.
@@ -50,21 +65,33 @@ std::vector<openvdb::Coord> nearSteps() {
     return steps;
 }
 
+// @param into  what another exemplar's grid of the same name became, or null
 template <typename Grid>
-GridPtr readThrough(const Grid& grid, const std::vector<Link>& links, const openvdb::FloatGrid& result) {
+GridPtr readThrough(const Grid& grid, const std::vector<Link>& links, const openvdb::FloatGrid& result,
+                    const GridPtr& into) {
     static const std::vector<openvdb::Coord> steps = nearSteps();
-    const auto made = Grid::create(grid.background());
-    made->insertMeta(grid);
-    made->setName(grid.getName());
-    made->setTransform(result.transform().copy());
+    auto made = openvdb::gridPtrCast<Grid>(into);
+    if (!made) {
+        made = Grid::create(grid.background());
+        made->insertMeta(grid);
+        made->setName(grid.getName());
+        made->setTransform(result.transform().copy());
+    }
+    const bool turns = grid.getVectorType() != openvdb::VEC_INVARIANT;
+    const ExemplarVariant* variant = nullptr;
+    Affine turn = kIdentity;
     const auto from = grid.getConstAccessor();
     auto to = made->getAccessor();
     typename Grid::ValueType value;
     for (const Link& link : links) {
+        if (link.variant != variant) {
+            variant = link.variant;
+            turn = variant ? turnBy(variant->rotation) : kIdentity;
+        }
         const openvdb::Coord middle = openvdb::Coord::round(grid.transform().worldToIndex(link.from));
         for (const openvdb::Coord& step : steps)
             if (from.probeValue(middle + step, value)) {
-                to.setValueOn(link.to, value);
+                to.setValueOn(link.to, turns && variant ? turned(value, turn) : value);
                 break;
             }
     }
@@ -72,31 +99,40 @@ GridPtr readThrough(const Grid& grid, const std::vector<Link>& links, const open
 }
 
 bool ofSourceMap(const std::string& name) {
-    return name == "source" || name == "exemplar" || name == "vote_source" || name == "vote_weight";
+    return name == "source" || name == "exemplar" || name == "vote_source" || name == "vote_weight" ||
+           name == "vote_exemplar" || name == "source_rotation" || name == "source_scale";
 }
 
 }  // namespace
 
-std::vector<GridPtr> carryThroughMap(const SourceMap& map, const LevelSet& exemplar,
+std::vector<GridPtr> carryThroughMap(const SourceMap& map, const std::vector<const LevelSet*>& exemplars,
                                      const openvdb::FloatGrid& result, const RunContext& ctx) {
     std::vector<GridPtr> carried;
-    if (exemplar.carried.empty()) return carried;
-    Stage stage(ctx, "carrying attributes", 1);
-    const std::vector<Link> links = linksOf(map, *exemplar.grid, result);
-    for (const GridPtr& grid : exemplar.carried) {
-        if (ofSourceMap(grid->getName())) continue;
-        GridPtr made;
-        const bool read = grid->transform().isLinear() && grid->apply<Carriable>([&](const auto& typed) {
-            made = readThrough(typed, links, result);
-        });
-        if (read)
-            carried.push_back(made);
-        else
-            message(ctx, MessageLevel::Warning,
-                    "grid \"" + grid->getName() + "\" (" + grid->valueType() +
-                        ") cannot be carried and is left out");
+    bool any = false;
+    for (const LevelSet* exemplar : exemplars) any = any || !exemplar->carried.empty();
+    if (!any) return carried;
+    Stage stage(ctx, "carrying attributes", exemplars.size());
+    const std::vector<std::vector<Link>> links = linksOf(map, exemplars, result);
+    for (std::size_t e = 0; e < exemplars.size(); ++e) {
+        for (const GridPtr& grid : exemplars[e]->carried) {
+            if (ofSourceMap(grid->getName())) continue;
+            const auto same = std::find_if(carried.begin(), carried.end(), [&](const GridPtr& other) {
+                return other->getName() == grid->getName() && other->type() == grid->type();
+            });
+            const GridPtr into = e > 0 && same != carried.end() ? *same : nullptr;
+            GridPtr made;
+            const bool read = grid->transform().isLinear() && grid->apply<Carriable>([&](const auto& typed) {
+                made = readThrough(typed, links[e], result, into);
+            });
+            if (!read)
+                message(ctx, MessageLevel::Warning,
+                        "grid \"" + grid->getName() + "\" (" + grid->valueType() +
+                            ") cannot be carried and is left out");
+            else if (!into)
+                carried.push_back(made);
+        }
+        stage.advance();
     }
-    stage.advance();
     return carried;
 }
 

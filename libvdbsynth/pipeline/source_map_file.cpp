@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <sstream>
 
 namespace vdbsynth {
 namespace {
@@ -66,6 +67,75 @@ std::string exactText(double value) {
 
 constexpr const char* kFirstKernel = "first";
 
+// The first exemplar's entries have no number.
+std::string numbered(const char* name, std::size_t e) {
+    return e == 0 ? name : std::string(name) + "_" + std::to_string(e);
+}
+
+std::string textOf(const std::vector<ExemplarVariant>& variants) {
+    std::string text;
+    for (const ExemplarVariant& v : variants)
+        text += std::to_string(v.exemplar) + "," + exactText(v.rotation.x) + "," + exactText(v.rotation.y) +
+                "," + exactText(v.rotation.z) + "," + exactText(v.scale) + "," + std::to_string(v.size.x) +
+                "," + std::to_string(v.size.y) + "," + std::to_string(v.size.z) + ";";
+    return text;
+}
+
+bool parseVariants(const std::string& text, std::size_t exemplars, std::vector<ExemplarVariant>& variants) {
+    std::istringstream stream(text);
+    for (std::string part; std::getline(stream, part, ';');) {
+        ExemplarVariant v;
+        int end = 0;
+        if (std::sscanf(part.c_str(), "%d,%lf,%lf,%lf,%lf,%d,%d,%d%n", &v.exemplar, &v.rotation.x,
+                        &v.rotation.y, &v.rotation.z, &v.scale, &v.size.x, &v.size.y, &v.size.z, &end) != 8 ||
+            std::size_t(end) != part.size() || v.exemplar < 0 || std::size_t(v.exemplar) >= exemplars ||
+            !(length(v.rotation) <= 100) || !(v.scale >= 0.2 && v.scale <= 5) ||
+            std::min({v.size.x, v.size.y, v.size.z}) < 1 || std::max({v.size.x, v.size.y, v.size.z}) > 65536)
+            return false;
+        variants.push_back(v);
+    }
+    return variants.size() <= 4096;
+}
+
+// Which exemplar or variant each patch is from; the first where the file does not say.
+void readNumbers(const std::string& path, SourceMap& map, const RunContext& ctx) {
+    const std::size_t count = map.variants.empty() ? map.exemplars.size() : map.variants.size();
+    if (count == 1) return;
+    const auto numbers = openvdb::gridPtrCast<openvdb::Int32Grid>(readVdbGrid(path, "vote_exemplar", ctx));
+    if (!numbers) throw Error(ErrorCode::BadData, path + ": grid \"vote_exemplar\" is not of whole numbers");
+    const auto accessor = numbers->getConstAccessor();
+    for (std::size_t i = 0; i < map.patches.source.size(); ++i) {
+        const Index3 l = map.patches.place(i);
+        const int number = accessor.getValue(openvdb::Coord(l.x, l.y, l.z));
+        if (number < 0 || std::size_t(number) >= count)
+            throw Error(ErrorCode::BadData,
+                        path + ": its source map names an exemplar that it does not have");
+        map.patches.exemplar[i] = number;
+    }
+}
+
+// Where the sources of a number begin in what it counts, as the file writes them, and the box they lie in.
+IndexBox roomOf(const SourceMap& map, std::int32_t number) {
+    return map.variants.empty() ? map.exemplars[std::size_t(number)].box
+                                : IndexBox::fromSize(map.variants[std::size_t(number)].size);
+}
+
+void readExemplars(const std::string& path, const openvdb::GridBase& grid, SourceMap& map) {
+    const int count = grid.getMetadata<openvdb::StringMetadata>(key("exemplars"))
+                          ? getWhole(path, grid, "exemplars", 1, 64)
+                          : 1;
+    for (std::size_t e = 0; e < std::size_t(count); ++e) {
+        MappedExemplar exemplar;
+        exemplar.box = getBox(path, grid, numbered("exemplar_box", e).c_str());
+        exemplar.domain = getBox(path, grid, numbered("exemplar_domain", e).c_str());
+        exemplar.hash = getText(path, grid, numbered("exemplar_hash", e).c_str());
+        map.exemplars.push_back(exemplar);
+    }
+    if (grid.getMetadata<openvdb::StringMetadata>(key("variants")) &&
+        !parseVariants(getText(path, grid, "variants"), map.exemplars.size(), map.variants))
+        throw Error(ErrorCode::BadData, path + ": its source map has a bad " + key("variants"));
+}
+
 void readWeights(const std::string& path, PatchMap& patches, const RunContext& ctx) {
     const auto weights = openvdb::gridPtrCast<openvdb::FloatGrid>(readVdbGrid(path, "vote_weight", ctx));
     if (!weights) throw Error(ErrorCode::BadData, path + ": grid \"vote_weight\" is not of floats");
@@ -94,14 +164,18 @@ std::vector<GridPtr> sourceMapGrids(const SourceMap& map, const openvdb::FloatGr
     auto voteAccessor = votes->getAccessor();
     auto weightAccessor = weights->getAccessor();
     const Index3 lattice = map.patches.lattice();
-    const Index3 shift = map.exemplarBox.min;
+    auto numbers = openvdb::Int32Grid::create(0);
+    numbers->setName("vote_exemplar");
+    auto numberAccessor = numbers->getAccessor();
     for (int a = 0; a < lattice.x; ++a)
         for (int b = 0; b < lattice.y; ++b)
             for (int c = 0; c < lattice.z; ++c) {
-                const Index3 source = map.patches.source[map.patches.index({a, b, c})] + shift;
+                const std::size_t at = map.patches.index({a, b, c});
+                const std::int32_t number = map.patches.exemplar[at];
+                numberAccessor.setValueOn(openvdb::Coord(a, b, c), number);
+                const Index3 source = map.patches.source[at] + roomOf(map, number).min;
                 voteAccessor.setValueOn(openvdb::Coord(a, b, c),
                                         openvdb::Vec3i(source.x, source.y, source.z));
-                const std::size_t at = map.patches.index({a, b, c});
                 weightAccessor.setValueOn(openvdb::Coord(a, b, c),
                                           map.patches.weight.empty() ? 1.f : map.patches.weight[at]);
             }
@@ -116,14 +190,18 @@ std::vector<GridPtr> sourceMapGrids(const SourceMap& map, const openvdb::FloatGr
     for (bool face : map.cut) cut += face ? '1' : '0';
     putText(*votes, "cut", cut);
     putText(*votes, "draft", map.draft ? "1" : "0");
-    putText(*votes, "exemplar_box", boxText(map.exemplarBox));
     putText(*votes, "target_box", boxText(map.targetBox));
     putText(*votes, "target_domain", boxText(map.targetDomain));
     putText(*votes, "band", exactText(double(map.band)));
     putText(*votes, "half_width", exactText(double(map.halfWidth)));
     putText(*votes, "voxel_size", exactText(map.voxelSize));
-    putText(*votes, "exemplar_hash", map.exemplarHash);
-    putText(*votes, "exemplar_domain", boxText(map.exemplarDomain));
+    if (map.exemplars.size() > 1) putText(*votes, "exemplars", std::to_string(map.exemplars.size()));
+    for (std::size_t e = 0; e < map.exemplars.size(); ++e) {
+        putText(*votes, numbered("exemplar_box", e).c_str(), boxText(map.exemplars[e].box));
+        putText(*votes, numbered("exemplar_domain", e).c_str(), boxText(map.exemplars[e].domain));
+        putText(*votes, numbered("exemplar_hash", e).c_str(), map.exemplars[e].hash);
+    }
+    if (!map.variants.empty()) putText(*votes, "variants", textOf(map.variants));
     // A target keeps the exemplar's transform.
     const openvdb::Mat4d matrix = result.transform().baseMap()->getAffineMap()->getMat4();
     std::string transform;
@@ -138,20 +216,34 @@ std::vector<GridPtr> sourceMapGrids(const SourceMap& map, const openvdb::FloatGr
     exemplar->setTransform(result.transform().copy());
     auto sourceAccessor = source->getAccessor();
     auto exemplarAccessor = exemplar->getAccessor();
+    auto rotation = openvdb::Vec3SGrid::create(openvdb::Vec3f(0));
+    rotation->setName("source_rotation");
+    rotation->setTransform(result.transform().copy());
+    auto rotationAccessor = rotation->getAccessor();
+    auto scale = openvdb::FloatGrid::create(1.f);
+    scale->setName("source_scale");
+    scale->setTransform(result.transform().copy());
+    auto scaleAccessor = scale->getAccessor();
     for (auto it = result.cbeginValueOn(); it; ++it) {
         const Index3 voxel = fromCoord(it.getCoord());
         if (!map.targetDomain.contains(voxel)) continue;
-        const Index3 local = voxel - map.targetBox.min;
-        const Index3 l = strongestBlock(map.patches, local);
-        const std::size_t at = map.patches.index(l);
-        const Index3 origin{map.patches.origin(0, l.x), map.patches.origin(1, l.y),
-                            map.patches.origin(2, l.z)};
-        const Index3 from = map.patches.source[at] + local - origin + shift;
-        sourceAccessor.setValueOn(it.getCoord(), openvdb::Vec3i(from.x, from.y, from.z));
-        exemplarAccessor.setValueOn(it.getCoord(), map.patches.exemplar[at]);
+        const SourceVoxel from = strongestSource(map, voxel);
+        sourceAccessor.setValueOn(it.getCoord(), openvdb::Vec3i(from.voxel.x, from.voxel.y, from.voxel.z));
+        exemplarAccessor.setValueOn(it.getCoord(), int(from.exemplar));
+        if (!from.variant) continue;
+        const Vec3d& turn = from.variant->rotation;
+        rotationAccessor.setValueOn(it.getCoord(),
+                                    openvdb::Vec3f(float(turn.x), float(turn.y), float(turn.z)));
+        scaleAccessor.setValueOn(it.getCoord(), float(from.variant->scale));
     }
     stage.advance();
-    return {source, exemplar, votes, weights};
+    std::vector<GridPtr> grids{source, exemplar, votes, weights};
+    if (map.exemplars.size() > 1 || !map.variants.empty()) grids.push_back(numbers);
+    if (!map.variants.empty()) {
+        grids.push_back(rotation);
+        grids.push_back(scale);
+    }
+    return grids;
 }
 
 SourceMap readSourceMap(const std::string& path, const RunContext& ctx) {
@@ -176,14 +268,12 @@ SourceMap readSourceMap(const std::string& path, const RunContext& ctx) {
     if (cut.size() != 6) throw Error(ErrorCode::BadData, path + ": its source map has a bad " + key("cut"));
     for (std::size_t face = 0; face < 6; ++face) map.cut[face] = cut[face] == '1';
     map.draft = getWhole(path, *votes, "draft", 0, 1) == 1;
-    map.exemplarBox = getBox(path, *votes, "exemplar_box");
+    readExemplars(path, *votes, map);
     map.targetBox = getBox(path, *votes, "target_box");
     map.targetDomain = getBox(path, *votes, "target_domain");
     map.band = float(getReal(path, *votes, "band", 1.5, 130));
     map.halfWidth = float(getReal(path, *votes, "half_width", 1.5, 100));
     map.voxelSize = getReal(path, *votes, "voxel_size", 1e-30, 1e30);
-    map.exemplarHash = getText(path, *votes, "exemplar_hash");
-    map.exemplarDomain = getBox(path, *votes, "exemplar_domain");
     if (!map.targetBox.contains(map.targetDomain))
         throw Error(ErrorCode::BadData, path + ": its source map's domain lies outside its box");
     map.patches.target = map.targetBox.size();
@@ -195,14 +285,17 @@ SourceMap readSourceMap(const std::string& path, const RunContext& ctx) {
                                             std::to_string(votes->activeVoxelCount()) + " blocks where " +
                                             std::to_string(blocks) + " belong");
     map.patches.allocate();
-    const IndexBox room = {map.exemplarBox.min, map.exemplarBox.max};
+    readNumbers(path, map, ctx);
     for (auto it = votes->cbeginValueOn(); it; ++it) {
         const Index3 l = fromCoord(it.getCoord());
         const Index3 source{(*it).x(), (*it).y(), (*it).z()};
-        if (!it.isVoxelValue() || l.x < 0 || l.y < 0 || l.z < 0 || l.x >= lattice.x || l.y >= lattice.y ||
-            l.z >= lattice.z || !room.contains(source))
+        const bool inside = it.isVoxelValue() && l.x >= 0 && l.y >= 0 && l.z >= 0 && l.x < lattice.x &&
+                            l.y < lattice.y && l.z < lattice.z;
+        const std::size_t at = inside ? map.patches.index(l) : 0;
+        const IndexBox room = roomOf(map, map.patches.exemplar[at]);
+        if (!inside || !room.contains(source))
             throw Error(ErrorCode::BadData, path + ": its source map points outside the exemplar");
-        map.patches.source[map.patches.index(l)] = source - map.exemplarBox.min;
+        map.patches.source[at] = source - room.min;
     }
     readWeights(path, map.patches, ctx);
     return map;

@@ -4,10 +4,10 @@
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/grid/pyramid.h"
 #include "libvdbsynth/pipeline/carry.h"
+#include "libvdbsynth/pipeline/control.h"
+#include "libvdbsynth/pipeline/synth_steps.h"
 #include "libvdbsynth/synth/texture_optimization.h"
-#include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/mask.h"
-#include "libvdbsynth/vdb/redistance.h"
 
 #include <openvdb/openvdb.h>
 
@@ -18,208 +18,222 @@
 namespace vdbsynth {
 namespace {
 
-constexpr int kObjectMargin = 4;  // [voxels] of air kept around an object: its band and one more
-
-struct Plan {
-    BlockSynthesisOptions block;
-    SourceMap map;
+// Everything that a synthesis reads, kept as long as it runs.
+struct Held {
+    ExemplarFields exemplars, variants;  // fields of distances
+    std::vector<BrickField> masks, guides;
+    BrickField which, guide;
 };
 
-Index3 halfOf(const Index3& n) {
-    return {(n.x + 1) / 2, (n.y + 1) / 2, (n.z + 1) / 2};
+ControlFrame frameOf(const SynthPlan& plan, const openvdb::FloatGrid& like) {
+    ControlFrame frame;
+    frame.box = plan.map.targetBox;
+    frame.period = plan.map.targetDomain;
+    for (std::size_t axis = 0; axis < 3; ++axis) frame.tiles[axis] = plan.block.border[axis] == Border::Tile;
+    frame.like = &like;
+    return frame;
 }
 
-Index3 targetSize(const Index3& domain, const SynthOptions& options) {
-    Index3 size;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double given = options.size[std::size_t(axis)];
-        const double voxels = options.multiple[std::size_t(axis)] ? given * domain[axis] : given;
-        requireOption(std::isfinite(voxels) && voxels >= 1 && voxels <= 1 << 20, "size",
-                      std::to_string(given), "at least the exemplar's domain and at most 1048576 voxels");
-        size[axis] = int(std::lround(voxels));
-        if (size[axis] < domain[axis])
-            throw Error(ErrorCode::Unusable,
-                        "--size: " + std::to_string(size[axis]) + " voxels along " + char('x' + axis) +
-                            " is smaller than the exemplar's domain (" + std::to_string(domain[axis]) +
-                            "); give at least that, or 1x");
+// The variants that rotation and scale maps ask for, and which of them, or of the exemplars, goes where.
+void choose(const SynthOptions& options, const openvdb::FloatGrid& like, SynthPlan& plan, Held& held,
+            const RunContext& ctx) {
+    if (!options.which && !options.rotation && !options.scale) return;
+    const int exemplars = int(plan.map.exemplars.size());
+    if (exemplars > 1 && !options.which)
+        throw Error(
+            ErrorCode::InvalidOption,
+            "--rotation-map, --scale-map: with several exemplars --which must say which one goes where");
+    const std::vector<WantedVariant> wanted =
+        wantedVariants(options.which.get(), options.rotation.get(), options.scale.get(), exemplars,
+                       frameOf(plan, like), ctx);
+    std::vector<std::int32_t> numbers;
+    if (options.rotation || options.scale) {
+        ChosenVariants chosen = chooseVariants(wanted, ctx);
+        for (ExemplarVariant& variant : chosen.variants)
+            variant.size = variantSize(plan.map.exemplars[std::size_t(variant.exemplar)].box.size(),
+                                       variant.rotation, variant.scale, *plan.block.grows);
+        plan.map.variants = chosen.variants;
+        numbers = chosen.number;
+        message(ctx, MessageLevel::Detail,
+                std::to_string(chosen.variants.size()) + " turned and scaled exemplars, within " +
+                    std::to_string(int(chosen.tolerance)) + " degrees of what is asked for");
+    } else {
+        for (const WantedVariant& want : wanted) numbers.push_back(want.exemplar);
     }
-    return size;
+    held.which = fieldOfNumbers(numbers, plan.map.targetBox, ctx);
+    plan.block.which = &held.which;
 }
 
-// A target that tiles is worked on with more than a block of its other end on either side.
-void addRoomToTile(Plan& plan, const SynthOptions& options) {
-    for (int axis = 0; axis < 3; ++axis) {
-        if (plan.block.border[std::size_t(axis)] != Border::Tile) continue;
-        if (options.method != SynthesisMethod::Default || options.draft)
-            throw Error(ErrorCode::InvalidOption, "--border tile: needs --method default and no --draft");
-        // Two blocks, in whole sixteens, so that coarser passes come out even.
-        const int around = (2 * (options.block > 0 ? options.block : 16) + 15) / 16 * 16;
-        plan.block.around[axis] = around;
-        plan.map.targetBox.min[axis] -= around;
-        plan.map.targetBox.max[axis] += around;
+// Faces, across axes that do not grow, that the surface does not cross: what lies beyond is known.
+std::array<bool, 6> facesOfOneSide(const BrickField& field, const std::array<bool, 3>& grows) {
+    std::array<bool, 6> faces{};
+    for (int face = 0; face < 6; ++face) {
+        const int axis = face / 2;
+        if (grows[std::size_t(axis)]) continue;
+        IndexBox layer = field.box();
+        if (face % 2)
+            layer.min[axis] = layer.max[axis];
+        else
+            layer.max[axis] = layer.min[axis];
+        std::vector<float> samples(std::size_t(layer.volume()));
+        field.readBox(layer.min, layer.size(), samples.data());
+        const auto inside = std::count_if(samples.begin(), samples.end(), [](float v) { return v < 0; });
+        faces[std::size_t(face)] = inside == 0 || inside == std::ptrdiff_t(samples.size());
     }
+    return faces;
 }
 
-// The part of a voted field that the result is made of: cut axes end with the domain.
-BrickField clipped(const SourceMap& map, BrickField field, const RunContext& ctx) {
-    IndexBox box = map.targetBox;
-    for (int axis = 0; axis < 3; ++axis)
-        if (map.cut[std::size_t(2 * axis)]) {
-            box.min[axis] = map.targetDomain.min[axis];
-            box.max[axis] = map.targetDomain.max[axis];
+void gatherMasks(const SynthOptions& options, const openvdb::FloatGrid& like, SynthPlan& plan, Held& held,
+                 const RunContext& ctx) {
+    const SourceMap& map = plan.map;
+    std::optional<BrickField> first;
+    if (options.exemplarMask) {
+        first = gatherMask(*options.exemplarMask, map.exemplars.front().box, like, ctx);
+        if (map.draft) first = halvedMask(*first, ctx);
+    }
+    if (map.variants.empty()) {
+        if (first) held.masks.push_back(std::move(*first));
+    } else {
+        for (const ExemplarVariant& variant : map.variants)
+            held.masks.push_back(variantMask(
+                map.exemplars[std::size_t(variant.exemplar)].box.size(), variant,
+                variant.exemplar == 0 && first ? &*first : nullptr,
+                facesOfOneSide(*held.exemplars[std::size_t(variant.exemplar)], *plan.block.grows), ctx));
+    }
+    for (const BrickField& mask : held.masks) plan.block.masks.push_back(&mask);
+}
+
+// Along an axis at 1x a scaled or tilted exemplar is not where the target is; unless its surface stays off
+// the faces, sources must then be free to move.
+void driftWhereTurned(SynthPlan& plan, const Held& held, const RunContext& ctx) {
+    if (plan.block.drift > 0) return;
+    for (const ExemplarVariant& variant : plan.map.variants) {
+        const auto goesOn = facesOfOneSide(*held.exemplars[std::size_t(variant.exemplar)], *plan.block.grows);
+        const Affine turn = turnBy(variant.rotation);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if ((*plan.block.grows)[axis] || (goesOn[2 * axis] && goesOn[2 * axis + 1]) ||
+                std::abs(turn[axis * 5] * variant.scale - 1) < 1e-9)
+                continue;
+            plan.block.drift = plan.block.size[int(axis)];
+            message(ctx, MessageLevel::Note,
+                    std::string("sources drift along ") + "xyz"[axis] +
+                        ", where a turned or scaled exemplar is not as long as the result");
+            return;
         }
-    if (box == map.targetBox) return field;
-    const Index3 shift = box.min - map.targetBox.min;
-    return BrickField::generate(IndexBox::fromSize(box.size()), ctx,
-                                [&](const IndexBox& brick, float* samples) {
-                                    field.readBox(brick.min + shift, brick.size(), samples);
-                                });
-}
-
-Plan makePlan(const LevelSet& exemplar, const SynthOptions& options) {
-    Plan plan;
-    const IndexBox domain = options.exemplarBox    ? *options.exemplarBox
-                            : options.exemplarMask ? activeBox(*options.exemplarMask)
-                                                   : exemplar.domain;
-    const bool recorded = options.exemplarBox || options.exemplarMask || exemplar.domainRecorded;
-    const Index3 size = targetSize(domain.size(), options);
-    plan.map.targetDomain = {domain.min, domain.min + size - Index3{1, 1, 1}};
-    plan.map.exemplarBox = plan.map.exemplarDomain = domain;
-    plan.map.targetBox = plan.map.targetDomain;
-    for (int axis = 0; axis < 3; ++axis) {
-        const Border border =
-            options.border[std::size_t(axis)].value_or(recorded ? Border::Cut : Border::Object);
-        plan.block.border[std::size_t(axis)] = border;
-        plan.map.cut[std::size_t(2 * axis)] = plan.map.cut[std::size_t(2 * axis + 1)] =
-            border != Border::Object;
-        if (border != Border::Object) continue;
-        for (IndexBox* box : {&plan.map.exemplarBox, &plan.map.targetBox}) {
-            box->min[axis] -= kObjectMargin;
-            box->max[axis] += kObjectMargin;
-        }
     }
-    addRoomToTile(plan, options);
-    plan.block.size = plan.map.targetBox.size();
-    plan.block.block = options.block;
-    plan.block.levels = options.levels;
-    plan.block.drift = options.drift;
-    plan.block.paper = options.method == SynthesisMethod::Paper;
-    validateSynthesis({plan.map.exemplarBox.size()}, plan.block);
-    if (plan.block.block == 0) plan.block.block = deriveBlock(plan.map.exemplarBox.size(), plan.block);
-    return plan;
 }
 
-// The plan at half the resolution, if the exemplar is large enough for it.
-void planDraft(Plan& plan, const RunContext& ctx) {
-    BlockSynthesisOptions coarse = plan.block;
-    coarse.size = halfOf(plan.block.size);
-    // The same block in the world, so that the draft has the choice that the full result has.
-    const int block = std::min(std::max(4, plan.block.block / 4 * 2),
-                               longestBlock(halfOf(plan.map.exemplarBox.size()), coarse));
-    if (block < 4) {
-        message(ctx, MessageLevel::Note,
-                "--draft: the exemplar is too small for half the resolution; all of it is used");
-        return;
+void gatherGuides(const SynthOptions& options, const LevelSets& exemplars, SynthPlan& plan, Held& held,
+                  const RunContext& ctx) {
+    if (!options.guide) return;
+    requireOption(options.exemplarGuides.size() == exemplars.size(), "exemplar-guide",
+                  std::to_string(options.exemplarGuides.size()), "one for each exemplar");
+    held.guide = sampledScalar(*options.guide, frameOf(plan, *exemplars.front()->grid), "--guide", ctx);
+    std::vector<BrickField> guides;
+    for (std::size_t e = 0; e < exemplars.size(); ++e) {
+        ControlFrame frame;
+        frame.box = plan.map.exemplars[e].box;
+        frame.like = exemplars[e]->grid.get();
+        guides.push_back(sampledScalar(*options.exemplarGuides[e], frame, "--exemplar-guide", ctx));
     }
-    coarse.block = block;
-    coarse.levels = std::max(1, (plan.block.levels > 0 ? plan.block.levels : 3) - 1);
-    coarse.drift = plan.block.drift / 2;
-    plan.block = coarse;
-    plan.map.draft = true;
-}
-
-void requireRoom(const RunContext& ctx, const SourceMap& map, const FloatGridPtr& grid) {
-    // The surface grows with the volume. An active voxel of the result costs its share of field, vote, mesh
-    // and distances; one of the exemplar's widened band its share of field, pyramids and index.
-    const double growth =
-        double(map.targetBox.volume()) / double(std::max<std::int64_t>(map.exemplarBox.volume(), 1));
-    const double active = double(grid->activeVoxelCount());
-    const double bytes = growth * active * 60 + active * double(map.band) / kHalfWidth * 40 +
-                         double(map.targetBox.volume()) * (8.0 / 512 + 0.5);
-    requireMemory(ctx, bytes,
-                  "a result of " + std::to_string(map.targetBox.size().x) + " x " +
-                      std::to_string(map.targetBox.size().y) + " x " +
-                      std::to_string(map.targetBox.size().z) + " voxels",
-                  "use a smaller --size or larger voxels");
-}
-
-// The exemplar as blocks are looked for in it: at half the resolution for a draft.
-std::shared_ptr<const BrickField> gatherForSearch(const SourceMap& map, const LevelSet& exemplar,
-                                                  const RunContext& ctx) {
-    Stage stage(ctx, "widening the exemplar's band", 1);
-    const auto field = std::make_shared<const BrickField>(
-        map.draft ? widenBandCoarse(*exemplar.grid, map.exemplarBox, map.cut, map.band / 2, ctx)
-                  : widenBand(*exemplar.grid, map.exemplarBox, map.cut, map.band, ctx));
-    stage.advance();
-    return field;
-}
-
-// The exemplar as the result is read from it.
-std::shared_ptr<const BrickField> gatherForVote(const SourceMap& map, const LevelSet& exemplar,
-                                                const RunContext& ctx) {
-    if (!map.draft) return gatherForSearch(map, exemplar, ctx);
-    return std::make_shared<const BrickField>(gatherNarrowBand(*exemplar.grid, map.exemplarBox, ctx));
-}
-
-// The voted field as a level set.
-LevelSet finish(const SourceMap& map, BrickField voted, const openvdb::FloatGrid& like,
-                const RunContext& ctx) {
-    LevelSet model;
-    const BrickField field = clipped(map, std::move(voted), ctx);
-    Index3 corner = map.targetBox.min;
-    for (int axis = 0; axis < 3; ++axis)
-        if (map.cut[std::size_t(2 * axis)]) corner[axis] = map.targetDomain.min[axis];
-    model.grid = map.draft && map.halfWidth == kHalfWidth
-                     ? closeAndNormalize(field, corner, map.cut, like, "the result", ctx)
-                     : closeAndRebuild(field, corner, map.cut, map.halfWidth, like, "the result", ctx);
-    model.domain = map.targetDomain;
-    model.domainRecorded = true;
-    stampLevelSet(model);
-    return model;
+    for (const ExemplarVariant& variant : plan.map.variants)
+        held.guides.push_back(variantOfScalar(guides[std::size_t(variant.exemplar)], variant, ctx));
+    if (plan.map.variants.empty()) held.guides = std::move(guides);
+    plan.block.guide = &held.guide;
+    for (const BrickField& guide : held.guides) plan.block.exemplarGuides.push_back(&guide);
+    plan.block.guideWeight = float(options.guideWeight);
 }
 
 }  // namespace
 
-SynthResult synthesize(const LevelSet& exemplar, const SynthOptions& options, const RunContext& ctx) {
+SynthResult synthesize(const LevelSets& exemplars, const SynthOptions& options, const RunContext& ctx) {
     const ThreadLimit limit(ctx);
-    Plan plan = makePlan(exemplar, options);
+    if (exemplars.empty()) throw Error(ErrorCode::InvalidOption, "synthesis needs at least one exemplar");
+    requireOption(!options.which || exemplars.size() > 1, "which", "for one exemplar",
+                  "several exemplars, of which it says which goes where");
+    requireOption(bool(options.guide) == !options.exemplarGuides.empty(), "guide", "alone",
+                  "both --guide and --exemplar-guide");
+    requireOption(options.guideWeight >= 0.001 && options.guideWeight <= 1000, "guide-weight",
+                  std::to_string(options.guideWeight), "from 0.001 to 1000");
+    SynthPlan plan = planSynthesis(exemplars, options);
     const int block = plan.block.block;
-    plan.map.band = std::max(8.f, float(block) / 2);
-    plan.map.halfWidth = options.halfWidth;
-    plan.map.voxelSize = voxelSizeOf(*exemplar.grid);
-    plan.map.exemplarHash = levelSetHash(*exemplar.grid);
+    const openvdb::FloatGrid& like = *exemplars.front()->grid;
     if (options.draft) planDraft(plan, ctx);
-    requireRoom(ctx, plan.map, exemplar.grid);
+    Held held;
+    choose(options, like, plan, held, ctx);
+    requireRoom(ctx, plan.map, exemplars);
     message(ctx, MessageLevel::Detail,
-            "domain " + boxText(plan.map.exemplarBox) + ", target " + boxText(plan.map.targetDomain) +
-                ", block " + std::to_string(block) + ", band widened to " +
+            "domain " + boxText(plan.map.exemplars.front().box) + ", target " +
+                boxText(plan.map.targetDomain) + ", block " + std::to_string(block) + ", band widened to " +
                 std::to_string(int(plan.map.band)) + " voxels");
-    const auto field = gatherForSearch(plan.map, exemplar, ctx);
-    BrickField mask;
-    if (options.exemplarMask) {
-        mask = gatherMask(*options.exemplarMask, plan.map.exemplarBox, *exemplar.grid, ctx);
-        if (plan.map.draft) mask = halvedMask(mask, ctx);
-        plan.block.masks = {&mask};
-    }
+    held.exemplars = gatherForSearch(plan.map, exemplars, ctx);
+    held.variants = variantsOf(plan.map, held.exemplars, ctx);
+    gatherMasks(options, like, plan, held, ctx);
+    driftWhereTurned(plan, held, ctx);
+    gatherGuides(options, exemplars, plan, held, ctx);
     BlockSynthesisResult synthesis = options.method == SynthesisMethod::Default
-                                         ? optimizeTexture({field}, plan.block, ctx)
-                                         : synthesizeBlocks({field}, plan.block, ctx);
+                                         ? optimizeTexture(held.variants, plan.block, ctx)
+                                         : synthesizeBlocks(held.variants, plan.block, ctx);
     SynthResult result;
     plan.map.patches = std::move(synthesis.map);
     if (plan.map.draft) {
         plan.map.patches = plan.map.patches.scaled(2, plan.map.targetBox.size());
-        synthesis.field = voteThroughMap(plan.map.patches, {gatherForVote(plan.map, exemplar, ctx)}, ctx);
+        synthesis.field = voteThroughMap(plan.map.patches, gatherForVote(plan.map, exemplars, ctx), ctx);
     }
-    result.model = finish(plan.map, synthesis.field, *exemplar.grid, ctx);
-    result.model.carried = carryThroughMap(plan.map, exemplar, *result.model.grid, ctx);
+    result.model = finishSynthesis(plan.map, std::move(synthesis.field), like, ctx);
+    result.model.carried = carryThroughMap(plan.map, exemplars, *result.model.grid, ctx);
     result.map = std::move(plan.map);
     result.stats = synthesis.stats;
     result.stats.block = result.map.patches.block;
     return result;
 }
 
-LevelSet repeatSynthesis(const SourceMap& map, const LevelSet& exemplar, const RunContext& ctx) {
-    const ThreadLimit limit(ctx);
+SynthResult synthesize(const LevelSet& exemplar, const SynthOptions& options, const RunContext& ctx) {
+    return synthesize(LevelSets{&exemplar}, options, ctx);
+}
+
+SourceVoxel strongestSource(const SourceMap& map, const Index3& voxel) {
+    const Index3 local = voxel - map.targetBox.min, block = strongestBlock(map.patches, local);
+    const std::size_t at = map.patches.index(block), number = std::size_t(map.patches.exemplar[at]);
+    const Index3 from = map.patches.source[at] + local - map.patches.originOf(block);
+    SourceVoxel source;
+    source.exemplar = map.variants.empty() ? number : std::size_t(map.variants[number].exemplar);
+    const IndexBox& box = map.exemplars[source.exemplar].box;
+    if (map.variants.empty()) {
+        source.voxel = from + box.min;
+        return source;
+    }
+    source.variant = &map.variants[number];
+    const Vec3d p = inExemplar(*source.variant, box.size(), {double(from.x), double(from.y), double(from.z)});
+    for (int axis = 0; axis < 3; ++axis) source.voxel[axis] = box.min[axis] + int(std::lround(p[axis]));
+    return source;
+}
+
+namespace {
+
+// The map for exemplars of `factor` times the resolution.
+SourceMap finerMap(const SourceMap& map, int factor) {
+    SourceMap scaled = map;
+    if (factor == 1) return scaled;
+    // Voxel i of the map covers fine voxels k*i + shift .. k*i + shift + k-1: the fine voxels whose
+    // centres lie in it.
+    const int shift = -((factor - 1) / 2);
+    const auto finer = [&](const IndexBox& box) {
+        const Index3 by{shift, shift, shift};
+        return IndexBox{box.min * factor + by, (box.max + Index3{1, 1, 1}) * factor + by - Index3{1, 1, 1}};
+    };
+    for (MappedExemplar& exemplar : scaled.exemplars) exemplar.box = finer(exemplar.box);
+    for (ExemplarVariant& variant : scaled.variants) variant.size = variant.size * factor;
+    scaled.targetBox = finer(map.targetBox);
+    scaled.targetDomain = finer(map.targetDomain);
+    scaled.band = map.band * float(factor);
+    scaled.patches = map.patches.scaled(factor, scaled.targetBox.size());
+    scaled.draft = false;  // what the finer exemplar is for
+    return scaled;
+}
+
+// How many of an exemplar's voxels make one of the map's along an axis.
+int factorOf(const SourceMap& map, const LevelSet& exemplar) {
     const double ratio = map.voxelSize / voxelSizeOf(*exemplar.grid);
     const int factor = int(std::lround(ratio));
     if (factor < 1 || factor > 64 || std::abs(ratio - factor) > 1e-4 * ratio)
@@ -228,36 +242,43 @@ LevelSet repeatSynthesis(const SourceMap& map, const LevelSet& exemplar, const R
                         " is not the map's " + std::to_string(map.voxelSize) +
                         " divided by a whole number; convert it with --voxel-size " +
                         std::to_string(map.voxelSize));
-    if (factor == 1 && levelSetHash(*exemplar.grid) != map.exemplarHash)
-        message(ctx, MessageLevel::Note,
-                "the exemplar is not the one that the map was made with; its geometry is read instead");
-    SourceMap scaled = map;
-    if (factor > 1) {
-        // Voxel i of the map covers fine voxels k*i + shift .. k*i + shift + k-1: the fine voxels whose
-        // centres lie in it.
-        const int shift = -((factor - 1) / 2);
-        const auto finer = [&](const IndexBox& box) {
-            const Index3 by{shift, shift, shift};
-            return IndexBox{box.min * factor + by,
-                            (box.max + Index3{1, 1, 1}) * factor + by - Index3{1, 1, 1}};
-        };
-        scaled.exemplarBox = finer(map.exemplarBox);
-        scaled.targetBox = finer(map.targetBox);
-        scaled.targetDomain = finer(map.targetDomain);
-        scaled.band = map.band * float(factor);
-        scaled.patches = map.patches.scaled(factor, scaled.targetBox.size());
-        scaled.draft = false;  // what the finer exemplar is for
+    return factor;
+}
+
+}  // namespace
+
+LevelSet repeatSynthesis(const SourceMap& map, const LevelSets& exemplars, const RunContext& ctx) {
+    const ThreadLimit limit(ctx);
+    if (exemplars.size() != map.exemplars.size())
+        throw Error(ErrorCode::ShapeMismatch, "the source map was made with " +
+                                                  std::to_string(map.exemplars.size()) +
+                                                  " exemplars; give as many, in the same order");
+    const int factor = factorOf(map, *exemplars.front());
+    for (std::size_t e = 0; e < exemplars.size(); ++e) {
+        if (factorOf(map, *exemplars[e]) != factor)
+            throw Error(ErrorCode::ShapeMismatch, "the exemplars' voxel sizes differ; convert them to one");
+        if (factor == 1 && levelSetHash(*exemplars[e]->grid) != map.exemplars[e].hash)
+            message(ctx, MessageLevel::Note,
+                    "the exemplar is not the one that the map was made with; its geometry is read instead");
     }
-    requireRoom(ctx, scaled, exemplar.grid);
-    const auto field = gatherForVote(scaled, exemplar, ctx);
+    const SourceMap scaled = finerMap(map, factor);
+    requireRoom(ctx, scaled, exemplars);
+    const ExemplarFields fields = gatherForVote(scaled, exemplars, ctx);
     float value = 0;
-    if (field->constantIn(field->box(), value))
-        throw Error(ErrorCode::ShapeMismatch, "the exemplar has no surface in the map's box " +
-                                                  boxText(scaled.exemplarBox) +
-                                                  "; it is not the map's exemplar or lies elsewhere");
-    LevelSet model = finish(scaled, voteThroughMap(scaled.patches, {field}, ctx), *exemplar.grid, ctx);
-    model.carried = carryThroughMap(scaled, exemplar, *model.grid, ctx);
+    for (std::size_t e = 0; e < fields.size(); ++e)
+        if (fields[e]->constantIn(fields[e]->box(), value))
+            throw Error(ErrorCode::ShapeMismatch, "the exemplar has no surface in the map's box " +
+                                                      boxText(scaled.exemplars[e].box) +
+                                                      "; it is not the map's exemplar or lies elsewhere");
+    const openvdb::FloatGrid& like = *exemplars.front()->grid;
+    LevelSet model = finishSynthesis(
+        scaled, voteThroughMap(scaled.patches, variantsOf(scaled, fields, ctx), ctx), like, ctx);
+    model.carried = carryThroughMap(scaled, exemplars, *model.grid, ctx);
     return model;
+}
+
+LevelSet repeatSynthesis(const SourceMap& map, const LevelSet& exemplar, const RunContext& ctx) {
+    return repeatSynthesis(map, LevelSets{&exemplar}, ctx);
 }
 
 }  // namespace vdbsynth

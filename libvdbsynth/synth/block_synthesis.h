@@ -50,7 +50,7 @@ struct BlockSynthesisOptions {
     /// [voxels^2]. Both or none.
     const BrickField* guide = nullptr;
     std::vector<const BrickField*> exemplarGuides;
-    float guideWeight = 1;
+    float guideWeight = 4;
     /// A target of which a part is known (optimizeTexture): its samples, and 1 where they are open; boxes of
     /// the target. Sources may then come from anywhere along every axis. Both or none.
     const BrickField* known = nullptr;

@@ -113,10 +113,12 @@ BrickField variantOfScalar(const BrickField& scalar, const ExemplarVariant& vari
 }
 
 BrickField variantMask(const Index3& exemplarSize, const ExemplarVariant& variant, const BrickField* mask,
-                       const RunContext& ctx) {
+                       const std::array<bool, 6>& goesOn, const RunContext& ctx) {
     return throughBack(variant, exemplarSize, ctx, [&](const Vec3d& p) {
         for (int axis = 0; axis < 3; ++axis)
-            if (p[axis] < -kInsideSlack || p[axis] > exemplarSize[axis] - 1 + kInsideSlack) return 0.f;
+            if ((p[axis] < -kInsideSlack && !goesOn[std::size_t(2 * axis)]) ||
+                (p[axis] > exemplarSize[axis] - 1 + kInsideSlack && !goesOn[std::size_t(2 * axis + 1)]))
+                return 0.f;
         return !mask || trilinear(*mask, p) > 1 - 1e-4f ? 1.f : 0.f;
     });
 }

@@ -45,8 +45,11 @@ BrickField variantOfScalar(const BrickField& scalar, const ExemplarVariant& vari
                            const RunContext& ctx = {});
 
 /// 1 where the variant's voxel lies in the exemplar, and in its mask if there is one; else 0.
+/// @param goesOn  for the low and high face of x, y, z: beyond it the exemplar's nearest sample will do, as
+/// above
+///                and below a terrain
 BrickField variantMask(const Index3& exemplarSize, const ExemplarVariant& variant, const BrickField* mask,
-                       const RunContext& ctx = {});
+                       const std::array<bool, 6>& goesOn = {}, const RunContext& ctx = {});
 
 /// What is asked for at one place of the target.
 struct WantedVariant {

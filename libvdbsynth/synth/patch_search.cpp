@@ -75,7 +75,7 @@ private:
 struct Source {
     Index3 place;
     std::int32_t exemplar = 0;
-    float cost = 0;                                           // mean squared difference
+    float cost = 0;                                           // mean squared difference, and what guides
     float dearness = std::numeric_limits<float>::infinity();  // what is compared
 };
 
@@ -120,7 +120,7 @@ private:
         const float cost = patchDifference(mPatch, mLevel.exemplars[e], place, mMap.block, giveUp);
         ++mCompared;
         const float dearness = (cost + guided + kCostFloor) * factor;
-        if (dearness < mBest.dearness) mBest = {place, exemplar, cost, dearness};
+        if (dearness < mBest.dearness) mBest = {place, exemplar, cost + guided, dearness};
     }
 
     // Neighbours whose sources lie to this one as they lie themselves: 0 to 6.

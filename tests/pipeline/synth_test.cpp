@@ -217,6 +217,143 @@ TEST_CASE("synthesize: what comes with the exemplar is read through the map, and
           carried->activeVoxelCount());
 }
 
+namespace {
+
+// A grid that is `inside` in a box and `outside` elsewhere.
+GridPtr boxGrid(const IndexBox& box, float inside, float outside = 0) {
+    auto grid = openvdb::FloatGrid::create(outside);
+    grid->fill(
+        {openvdb::Coord(box.min.x, box.min.y, box.min.z), openvdb::Coord(box.max.x, box.max.y, box.max.z)},
+        inside);
+    return grid;
+}
+
+// Through a file and back, bit for bit.
+void checkRepeats(const SynthResult& result, const std::vector<const LevelSet*>& exemplars) {
+    const test::TemporaryFolder folder;
+    writeVdb(folder.path("m.vdb"), sourceMapGrids(result.map, *result.model.grid), {});
+    const LevelSet again = repeatSynthesis(readSourceMap(folder.path("m.vdb")), exemplars);
+    CHECK(levelSetHash(*again.grid) == levelSetHash(*result.model.grid));
+}
+
+}  // namespace
+
+TEST_CASE("synthesize: several exemplars, each where it is asked for, with what they carry",
+          "[pipeline][property]") {
+    LevelSet balls = made("balls"), grid = made("grid", 44);
+    for (LevelSet* exemplar : {&balls, &grid}) {
+        auto mark = openvdb::FloatGrid::create(0.f);
+        mark->setName("mark");
+        for (auto it = exemplar->grid->cbeginValueOn(); it; ++it)
+            mark->tree().setValueOn(it.getCoord(), exemplar == &balls ? 1.f : 2.f);
+        exemplar->carried = {mark};
+    }
+    SynthOptions options = sized(2, 1.5, 1);
+    options.which = boxGrid({{0, 0, 0}, {39, 59, 43}}, 1);
+    const SynthResult result = synthesize({&balls, &grid}, options);
+    CHECK(result.model.domain.size() == Index3{80, 60, 40});
+    const std::vector<GridPtr> grids = sourceMapGrids(result.map, *result.model.grid);
+    const auto exemplar = openvdb::gridPtrCast<openvdb::Int32Grid>(grids[1]);
+    for (auto it = exemplar->cbeginValueOn(); it; ++it) {
+        if (it.getCoord().x() < 30) REQUIRE(*it == 1);
+        if (it.getCoord().x() > 50) REQUIRE(*it == 0);
+    }
+    REQUIRE(result.model.carried.size() == 1);
+    const auto mark = openvdb::gridPtrCast<openvdb::FloatGrid>(result.model.carried[0]);
+    CHECK(mark->activeVoxelCount() > exemplar->activeVoxelCount() * 9 / 10);
+    for (auto it = mark->cbeginValueOn(); it; ++it)
+        if (it.getCoord().x() < 30) REQUIRE(*it == 2.f);
+    checkRepeats(result, {&balls, &grid});
+    CHECK(test::thrownBy([&] { repeatSynthesis(result.map, balls); }).code == int(ErrorCode::ShapeMismatch));
+    CHECK(test::thrownBy([&] { synthesize(balls, options); }).code == int(ErrorCode::InvalidOption));
+    const LevelSet coarse = made("grid", 40, 16, 2);
+    CHECK(test::thrownBy([&] {
+              synthesize({&balls, &coarse}, options);
+          }).code == int(ErrorCode::ShapeMismatch));
+    options.method = SynthesisMethod::Paper;
+    CHECK(test::thrownBy([&] {
+              synthesize({&balls, &grid}, options);
+          }).code == int(ErrorCode::InvalidOption));
+}
+
+TEST_CASE("synthesize: turned and scaled by maps", "[pipeline][property]") {
+    // Fibres run along x; a quarter turn about z makes them run along y.
+    const LevelSet fibres = made("fibres", 48);
+    const auto slope = [](const openvdb::FloatGrid& grid, int axis, const IndexBox& box) {
+        double sum = 0;
+        std::size_t count = 0;
+        for (auto it = grid.cbeginValueOn(); it; ++it) {
+            const openvdb::Coord c = it.getCoord();
+            if (!box.contains(Index3{c.x(), c.y(), c.z()}) || std::abs(*it) > 1) continue;
+            openvdb::Coord next = c, last = c;
+            ++next[axis];
+            --last[axis];
+            sum += std::abs(grid.tree().getValue(next) - grid.tree().getValue(last)) / 2;
+            ++count;
+        }
+        REQUIRE(count > 1000);
+        return sum / double(count);
+    };
+    SynthOptions options = sized(2, 2, 1);
+    options.rotation = boxGrid({{0, 0, 0}, {47, 95, 47}}, float(3.14159265358979 / 2));
+    const SynthResult result = synthesize(fibres, options);
+    const IndexBox turned{{4, 4, 4}, {36, 90, 43}}, plain{{60, 4, 4}, {90, 90, 43}};
+    const openvdb::FloatGrid& grid = *result.model.grid;
+    const double along = slope(*fibres.grid, 0, fibres.domain.expanded(-4)),
+                 across = slope(*fibres.grid, 1, fibres.domain.expanded(-4));
+    REQUIRE(along < 0.5 * across);
+    CHECK(slope(grid, 0, plain) == Approx(along).margin(0.1));
+    CHECK(slope(grid, 1, turned) == Approx(along).margin(0.1));
+    CHECK(slope(grid, 0, turned) == Approx(across).margin(0.15));
+    CHECK(measureBand(grid).gradientErrorMean < 0.06);
+    checkRepeats(result, {&fibres});
+    const std::vector<GridPtr> grids = sourceMapGrids(result.map, grid);
+    REQUIRE(grids.size() == 7);
+    CHECK(grids[5]->getName() == "source_rotation");
+    const auto rotation = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grids[5]);
+    CHECK(rotation->tree().getValue(rotation->beginValueOn().getCoord()).z() == Approx(1.5708));
+
+    options.rotation.reset();
+    options.scale = boxGrid({{0, 0, 0}, {95, 95, 47}}, 1.5f, 1.5f);
+    const SynthResult larger = synthesize(fibres, options);
+    // Surface per volume goes with 1 / scale.
+    const auto density = [](const LevelSet& model) {
+        const IndexBox inner = model.domain.expanded(-4);
+        double near = 0;
+        for (auto it = model.grid->cbeginValueOn(); it; ++it)
+            near += inner.contains(Index3{it.getCoord().x(), it.getCoord().y(), it.getCoord().z()}) &&
+                    std::abs(*it) < 1;
+        return near / double(inner.volume());
+    };
+    CHECK(density(larger.model) == Approx(density(fibres) / 1.5).epsilon(0.15));
+    checkRepeats(larger, {&fibres});
+    options.border = {Border::Object, Border::Object, Border::Object};
+    CHECK(test::thrownBy([&] { synthesize(fibres, options); }).code == int(ErrorCode::InvalidOption));
+}
+
+TEST_CASE("synthesize: a guide places parts of the exemplar", "[pipeline][property]") {
+    const LevelSet balls = made("balls"), grid = made("grid");
+    SynthOptions both = sized(2, 1, 1);
+    both.which = boxGrid({{0, 0, 0}, {39, 39, 39}}, 1);
+    const SynthResult mixed = synthesize({&balls, &grid}, both);
+    SynthOptions options = sized(1.5, 2, 1);
+    options.guide = boxGrid({{0, 0, 0}, {119, 39, 39}}, 1);
+    options.exemplarGuides = {both.which};
+    const SynthResult result = synthesize(mixed.model, options);
+    std::size_t right = 0, all = 0;
+    for (std::size_t i = 0; i < result.map.patches.source.size(); ++i) {
+        const int y = result.map.patches.originOf(result.map.patches.place(i)).y + 8,
+                  x = result.map.patches.source[i].x + 8;
+        if (std::abs(y - 40) < 12 || std::abs(x - 40) < 8) continue;
+        ++all;
+        right += (y < 40) == (x < 40) ? 1 : 0;
+    }
+    CHECK(all > 100);
+    CHECK(double(right) > 0.9 * double(all));
+    options.exemplarGuides.clear();
+    CHECK(test::thrownBy([&] { synthesize(mixed.model, options); }).code == int(ErrorCode::InvalidOption));
+}
+
 TEST_CASE("sourceMapGrids: on nearly all of the band the result lies where the map says",
           "[pipeline][property]") {
     const LevelSet exemplar = made("balls", 48);
@@ -249,6 +386,15 @@ TEST_CASE("readSourceMap: files without a map and broken maps are refused", "[pi
         INFO(name);
         const GridPtr broken = grids[2]->deepCopyGrid();
         broken->insertMeta(std::string("vdbsynth:map:") + name, openvdb::StringMetadata("-7"));
+        writeVdb(folder.path("b.vdb"), {broken}, {});
+        CHECK(test::thrownBy([&] { readSourceMap(folder.path("b.vdb")); }).code == int(ErrorCode::BadData));
+    }
+    for (const auto& [name, value] : {std::pair<const char*, const char*>{"variants", "0,0,0,9,1,40,40;"},
+                                      {"variants", "7,0,0,0,1,40,40,40;"},
+                                      {"exemplars", "2"}}) {
+        INFO(name << value);
+        const GridPtr broken = grids[2]->deepCopyGrid();
+        broken->insertMeta(std::string("vdbsynth:map:") + name, openvdb::StringMetadata(value));
         writeVdb(folder.path("b.vdb"), {broken}, {});
         CHECK(test::thrownBy([&] { readSourceMap(folder.path("b.vdb")); }).code == int(ErrorCode::BadData));
     }

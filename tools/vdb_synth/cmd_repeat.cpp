@@ -9,13 +9,13 @@ namespace vdbsynth::cli {
 namespace {
 
 void repeat(Run& run) {
-    run.requireInputs(2, 2);
+    run.requireInputs(2, 65);
     const std::vector<std::string> paths = run.outputPaths();
     requireOutputPaths(paths);
     const std::string mapPath = run.arguments.inputs[0];
     if (extensionOf(mapPath) != "vdb")
         throw Error(ErrorCode::InvalidOption, mapPath + ": a source map is a .vdb file");
-    requireModelPath(run.arguments.inputs[1]);
+    for (std::size_t i = 1; i < run.arguments.inputs.size(); ++i) requireModelPath(run.arguments.inputs[i]);
     ModelOutputOptions outputs;
     outputs.adaptivity = run.arguments.real("adaptivity", 0, 0, 1);
     ModelOptions modelOptions = run.modelOptions();
@@ -23,8 +23,12 @@ void repeat(Run& run) {
     SourceMap map = readSourceMap(mapPath, run.context);
     run.noteInput(mapPath);
     if (run.arguments.has("half-width")) map.halfWidth = float(modelOptions.halfWidth);
-    const LevelSet exemplar = run.load(run.arguments.inputs[1], modelOptions);
-    const LevelSet result = repeatSynthesis(map, exemplar, run.context);
+    std::vector<LevelSet> exemplars;
+    std::vector<const LevelSet*> pointers;
+    for (std::size_t i = 1; i < run.arguments.inputs.size(); ++i)
+        exemplars.push_back(run.load(run.arguments.inputs[i], modelOptions));
+    for (const LevelSet& exemplar : exemplars) pointers.push_back(&exemplar);
+    const LevelSet result = repeatSynthesis(map, pointers, run.context);
     outputs.metadata = run.metadata();
     writeModel(result, paths, outputs, run.outputs(), run.context);
     run.describe(result);
@@ -34,7 +38,7 @@ void repeat(Run& run) {
 }  // namespace
 
 const Command kRepeat{"repeat",
-                      "repeat MAP EXEMPLAR -o OUT [options]",
+                      "repeat MAP EXEMPLAR... -o OUT [options]",
                       "Apply a saved source map again",
                       "vdb_synth repeat map.vdb grid.vdb -o again.vdb",
                       {{"adaptivity", "A", "0 to 1: merge flat parts of a mesh output, default 0"}},

@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
+#include "libvdbsynth/pipeline/control.h"
 #include "libvdbsynth/pipeline/fill.h"
 #include "libvdbsynth/pipeline/outputs.h"
 #include "libvdbsynth/pipeline/synth.h"
@@ -115,7 +116,8 @@ void fill(Run& run) {
     const Arguments& arguments = run.arguments;
     run.requireInputs(0, 1);
     for (const char* option :
-         {"size", "border", "exemplar-box", "exemplar-mask", "drift", "draft", "method", "source-map"})
+         {"size", "border", "exemplar-box", "exemplar-mask", "drift", "draft", "method", "source-map",
+          "which", "guide", "exemplar-guide", "guide-weight", "rotation-map", "scale-map"})
         if (arguments.has(option))
             throw Error(ErrorCode::InvalidOption,
                         std::string("--") + option + ": has no meaning with --keep, which fills holes");
@@ -157,14 +159,68 @@ void fill(Run& run) {
     run.finish();
 }
 
+// What needs no file.
+void requireControls(const Arguments& arguments) {
+    if (arguments.has("which") && arguments.inputs.size() < 2)
+        throw Error(ErrorCode::InvalidOption,
+                    "--which: says which of several exemplars goes where; give at least two");
+    if (arguments.has("guide") != arguments.has("exemplar-guide"))
+        throw Error(
+            ErrorCode::InvalidOption,
+            "--guide and --exemplar-guide: belong together, the same scalar over result and exemplar");
+    if (!arguments.has("guide")) return;
+    const std::size_t guides = arguments.all("exemplar-guide").size();
+    requireOption(guides == arguments.inputs.size(), "exemplar-guide", std::to_string(guides) + " times",
+                  "once for each exemplar, in their order");
+}
+
+// The first one's voxel size holds for all.
+std::vector<LevelSet> loadExemplars(Run& run, ModelOptions options) {
+    std::vector<LevelSet> exemplars;
+    for (const std::string& path : run.arguments.inputs) {
+        exemplars.push_back(run.load(path, options));
+        options.voxelSize = voxelSizeOf(*exemplars.front().grid);
+        options.resolution = 0;
+    }
+    return exemplars;
+}
+
+std::vector<const LevelSet*> pointersTo(const std::vector<LevelSet>& models) {
+    std::vector<const LevelSet*> pointers;
+    for (const LevelSet& model : models) pointers.push_back(&model);
+    return pointers;
+}
+
+// Grids as they are; of --which also any model.
+void loadControls(Run& run, double voxelSize, SynthOptions& options) {
+    const Arguments& arguments = run.arguments;
+    const std::string which = arguments.text("which");
+    if (extensionOf(which) == "vdb" || which.find(".vdb:") != std::string::npos) {
+        options.which = run.loadMask("which");
+    } else if (arguments.has("which")) {
+        requireModelPath(which);
+        ModelOptions model;
+        model.voxelSize = voxelSize;
+        options.which = asControl(run.load(which, model).grid);
+    }
+    if (arguments.has("rotation-map")) options.rotation = run.loadMask("rotation-map");
+    if (arguments.has("scale-map")) options.scale = run.loadMask("scale-map");
+    if (!arguments.has("guide")) return;
+    options.guide = run.loadMask("guide");
+    for (const std::string& path : arguments.all("exemplar-guide"))
+        options.exemplarGuides.push_back(run.loadGrid("exemplar-guide", path));
+    options.guideWeight = arguments.real("guide-weight", 4, 0.001, 1000);
+}
+
 void synth(Run& run) {
     if (run.arguments.has("keep")) return fill(run);
     if (run.arguments.has("hole"))
         throw Error(ErrorCode::InvalidOption, "--hole: needs --keep PARTIAL, the model that has the hole");
-    run.requireInputs(1, 1);
+    run.requireInputs(1, 64);
     const std::vector<std::string> paths = run.outputPaths();
     requireOutputPaths(paths);
     SynthOptions options = parseOptions(run.arguments);
+    requireControls(run.arguments);
     const std::string mapPath = run.arguments.text("source-map");
     const bool mapInside = mapPath == kNoValue;
     bool anyVdb = false;
@@ -178,13 +234,14 @@ void synth(Run& run) {
     }
     ModelOutputOptions outputs;
     outputs.adaptivity = run.arguments.real("adaptivity", 0, 0, 1);
-    requireModelPath(run.arguments.inputs[0]);
+    for (const std::string& path : run.arguments.inputs) requireModelPath(path);
     ModelOptions modelOptions = run.modelOptions();
     modelOptions.halfWidth = 3;
     modelOptions.carry = true;
-    const LevelSet exemplar = run.load(run.arguments.inputs[0], modelOptions);
+    const std::vector<LevelSet> exemplars = loadExemplars(run, modelOptions);
     if (run.arguments.has("exemplar-mask")) options.exemplarMask = run.loadMask("exemplar-mask");
-    const SynthResult result = synthesize(exemplar, options, run.context);
+    loadControls(run, voxelSizeOf(*exemplars.front().grid), options);
+    const SynthResult result = synthesize(pointersTo(exemplars), options, run.context);
     outputs.metadata = run.metadata();
     std::vector<GridPtr> mapGrids;
     if (!mapPath.empty()) mapGrids = sourceMapGrids(result.map, *result.model.grid, run.context);
@@ -208,7 +265,7 @@ void synth(Run& run) {
 
 const Command kSynth{
     "synth",
-    "synth EXEMPLAR -o OUT --size X,Y,Z [options] | synth [EXEMPLAR] --keep PARTIAL --hole MODEL -o OUT",
+    "synth EXEMPLAR... -o OUT --size X,Y,Z [options] | synth [EXEMPLAR] --keep PARTIAL --hole MODEL -o OUT",
     "Make more geometry like an exemplar's",
     "vdb_synth synth grid.vdb -o more.vdb --size 2x,2x,1x",
     {{"size", "X,Y,Z", "size of the result: voxels, or multiples of the exemplar's domain such as 2x,2x,1x"},
@@ -224,8 +281,22 @@ const Command kSynth{
       "is recorded"},
      {"exemplar-box", "BOX",
       "domain i,j,k,I,J,K in the exemplar's index space, both corners inclusive (voxels)"},
-     {"exemplar-mask", "FILE.vdb", "take blocks only from where this grid is active; its box is the domain"},
+     {"exemplar-mask", "FILE.vdb[:GRID]",
+      "take blocks only from where this grid is active; its box is the domain (of the first exemplar)"},
      {"drift", "D", "how far sources may be from their own place along axes at 1x (voxels), default 0"},
+     {"which", "FILE",
+      "with several exemplars: which one goes where in the result; a .vdb with a grid of numbers (0 is the "
+      "first) or any model, inside which the second is used, outside it the first"},
+     {"guide", "FILE.vdb[:GRID]",
+      "a grid of scalars over the result: parts of the exemplar are placed where --exemplar-guide has the "
+      "like"},
+     {"exemplar-guide", "FILE.vdb[:GRID]", "the same scalar over the exemplar; once for each exemplar", true},
+     {"guide-weight", "W", "how much a guide counts beside the shape, 0.001 to 1000, default 4"},
+     {"rotation-map", "FILE.vdb[:GRID]",
+      "a grid over the result: by how much to turn what is copied, rotation vectors or angles about z "
+      "(radians)"},
+     {"scale-map", "FILE.vdb[:GRID]",
+      "a grid over the result: by how much to scale what is copied, 0.25 to 4"},
      {"keep", "PARTIAL",
       "fill the holes of this model instead; the exemplar is then optional, default the model itself"},
      {"hole", "MODEL",

@@ -47,6 +47,8 @@ public:
     LevelSet load(const std::string& path, const ModelOptions& options);
     /// Reads the one grid of the mask that an option names. @throw Error InvalidOption (not .vdb), BadData
     GridPtr loadMask(const std::string& option);
+    /// Reads the one grid of a file, or that of FILE.vdb:GRID. @throw Error as loadMask
+    GridPtr loadGrid(const std::string& option, const std::string& text);
     /// Makes sure that all outputs can be written, before the work; `load` calls it.
     void reserveOutputs();
     /// Notes an input that is not read through `load`.

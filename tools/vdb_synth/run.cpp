@@ -254,16 +254,30 @@ void Run::count(const std::string& name, const nlohmann::json& value) {
 }
 
 GridPtr Run::loadMask(const std::string& option) {
-    const std::string path = arguments.text(option);
+    return loadGrid(option, arguments.text(option));
+}
+
+GridPtr Run::loadGrid(const std::string& option, const std::string& text) {
+    const std::size_t colon = text.rfind(".vdb:");
+    const std::string path = colon == std::string::npos ? text : text.substr(0, colon + 4),
+                      name = colon == std::string::npos ? "" : text.substr(colon + 5);
     if (extensionOf(path) != "vdb")
-        throw Error(ErrorCode::InvalidOption, "--" + option + " " + path + ": a mask is a .vdb file");
+        throw Error(ErrorCode::InvalidOption,
+                    "--" + option + " " + text + ": give a .vdb file, or FILE.vdb:GRID for one of its grids");
     reserveOutputs();
-    const std::vector<GridPtr> grids = readVdbGrids(path, context);
-    if (grids.size() != 1)
-        throw Error(ErrorCode::BadData,
-                    path + ": a mask file holds one grid, this one holds " + std::to_string(grids.size()));
+    GridPtr grid;
+    if (!name.empty()) {
+        grid = readVdbGrid(path, name, context);
+    } else {
+        const std::vector<GridPtr> grids = readVdbGrids(path, context);
+        if (grids.size() != 1)
+            throw Error(ErrorCode::BadData, path + ": holds " + std::to_string(grids.size()) +
+                                                " grids; name the one for --" + option + " as " + path +
+                                                ":GRID");
+        grid = grids.front();
+    }
     noteInput(path);
-    return grids.front();
+    return grid;
 }
 
 void Run::describe(const LevelSet& result) {

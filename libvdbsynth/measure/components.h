@@ -21,4 +21,9 @@ enum class Neighbours {
 /// @par Cost    O(runs of voxels along z), memory 12 bytes a run   @par Repeats yes
 Components findComponents(const Occupancy& solid, Neighbours neighbours);
 
+/// The voxels of all parts smaller than `interiorLimit` that touch no face of the box, and of those smaller
+/// than `cutLimit` that do; x slowest.   @par Cost, Repeats as findComponents
+std::vector<Index3> smallParts(const Occupancy& solid, Neighbours neighbours, std::uint64_t interiorLimit,
+                               std::uint64_t cutLimit);
+
 }  // namespace vdbsynth

@@ -178,9 +178,10 @@ SynthResult synthesize(const LevelSets& exemplars, const SynthOptions& options, 
     plan.map.patches = std::move(synthesis.map);
     if (plan.map.draft) {
         plan.map.patches = plan.map.patches.scaled(2, plan.map.targetBox.size());
-        synthesis.field = voteThroughMap(plan.map.patches, gatherForVote(plan.map, exemplars, ctx), ctx);
+        held.exemplars = gatherForVote(plan.map, exemplars, ctx);
+        synthesis.field = voteThroughMap(plan.map.patches, held.exemplars, ctx);
     }
-    result.model = finishSynthesis(plan.map, std::move(synthesis.field), like, ctx);
+    result.model = finishSynthesis(plan.map, std::move(synthesis.field), held.exemplars, like, ctx);
     result.model.carried = carryThroughMap(plan.map, exemplars, *result.model.grid, ctx);
     result.map = std::move(plan.map);
     result.stats = synthesis.stats;
@@ -272,7 +273,7 @@ LevelSet repeatSynthesis(const SourceMap& map, const LevelSets& exemplars, const
                                                       "; it is not the map's exemplar or lies elsewhere");
     const openvdb::FloatGrid& like = *exemplars.front()->grid;
     LevelSet model = finishSynthesis(
-        scaled, voteThroughMap(scaled.patches, variantsOf(scaled, fields, ctx), ctx), like, ctx);
+        scaled, voteThroughMap(scaled.patches, variantsOf(scaled, fields, ctx), ctx), fields, like, ctx);
     model.carried = carryThroughMap(scaled, exemplars, *model.grid, ctx);
     return model;
 }

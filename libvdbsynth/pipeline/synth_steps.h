@@ -32,8 +32,11 @@ ExemplarFields gatherForVote(const SourceMap& map, const LevelSets& exemplars, c
 /// What `patches.exemplar` counts: the exemplars, or their variants.
 ExemplarFields variantsOf(const SourceMap& map, const ExemplarFields& exemplars, const RunContext& ctx);
 
-/// The voted field as a level set.
-LevelSet finishSynthesis(const SourceMap& map, BrickField voted, const openvdb::FloatGrid& like,
-                         const RunContext& ctx);
+/// The voted field as a level set. Crumbs go first: parts of the solid, and of the void, that are smaller
+/// than the smallest (of those that touch no face: the smallest hundredth) that an exemplar has, and than
+/// half a block a side. Votes of blocks that disagree leave them; no exemplar has any.
+/// @param exemplars  as the result was read from, without variants
+LevelSet finishSynthesis(const SourceMap& map, BrickField voted, const ExemplarFields& exemplars,
+                         const openvdb::FloatGrid& like, const RunContext& ctx);
 
 }  // namespace vdbsynth

@@ -152,6 +152,21 @@ TEST_CASE("findComponents: parts, their sizes, and which touch the box", "[measu
     CHECK(findComponents(Occupancy({4, 4, 4}), Neighbours::All).sizes.empty());
 }
 
+TEST_CASE("smallParts: the voxels of parts under their limits, whole ones and cut ones",
+          "[measure][oracle]") {
+    const Occupancy solid = solidFrom({20, 20, 40}, [](const Index3& p) {
+        return inBall(p, 8, 8, 10, 3.2) || p == Index3{3, 3, 30} || p == Index3{4, 4, 31} ||
+               (p.x == 19 && p.y > 17 && p.z < 3) || p == Index3{12, 0, 20};
+    });
+    const std::vector<Index3> whole = smallParts(solid, Neighbours::All, 3, 0);
+    CHECK(whole == std::vector<Index3>{{3, 3, 30}, {4, 4, 31}});
+    CHECK(smallParts(solid, Neighbours::All, 2, 0).empty());
+    CHECK(smallParts(solid, Neighbours::Faces, 2, 0).size() == 2);
+    CHECK(smallParts(solid, Neighbours::All, 0, 2) == std::vector<Index3>{{12, 0, 20}});
+    CHECK(smallParts(solid, Neighbours::All, 0, 7).size() == 7);
+    CHECK(smallParts(solid, Neighbours::All, 1000000, 1000000).size() == solid.count());
+}
+
 TEST_CASE("findComponents: as a flood fill finds them in noise", "[measure][oracle]") {
     const Index3 size{9, 11, 70};
     for (int reach : {6, 26}) {

@@ -3,7 +3,9 @@
 #include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
+#include "libvdbsynth/measure/components.h"
 #include "libvdbsynth/pipeline/make.h"
+#include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/mask.h"
 #include "libvdbsynth/vdb/mesh_conversion.h"
 #include "libvdbsynth/vdb/vdb_file.h"
@@ -237,6 +239,30 @@ void checkRepeats(const SynthResult& result, const std::vector<const LevelSet*>&
 }
 
 }  // namespace
+
+TEST_CASE("synthesize: no part is smaller than the exemplar's smallest", "[pipeline][property]") {
+    for (const char* kind : {"balls", "chainmail"}) {
+        INFO(kind);
+        const LevelSet exemplar = made(kind, 48);
+        const auto parts = [](const LevelSet& model) {
+            const IndexBox& box = model.domain;
+            return findComponents(Occupancy::fromField(gatherBricks(
+                                      *model.grid, box, float(1 / voxelSizeOf(*model.grid)), 3.f)),
+                                  Neighbours::All);
+        };
+        const Components of = parts(exemplar);
+        // Half a block a side is what a crumb is at most.
+        std::uint64_t least = 8 * 8 * 8;
+        if (!of.interior.empty()) least = std::min(least, of.interior.back());
+        for (std::uint64_t seed : {1, 2, 3}) {
+            RunContext ctx;
+            ctx.seed = seed;
+            const Components made = parts(synthesize(exemplar, sized(2, 2, 1), ctx).model);
+            REQUIRE_FALSE(made.sizes.empty());
+            if (!made.interior.empty()) CHECK(made.interior.back() >= least);
+        }
+    }
+}
 
 TEST_CASE("synthesize: several exemplars, each where it is asked for, with what they carry",
           "[pipeline][property]") {

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Makes more of every exemplar of a fixed set and measures how good it is by `vdb_synth compare`: prints a table, writes
 quality.json, the pages of compare and a contact sheet (quality.png).
-Usage: quality.py BUILD_FOLDER [--seeds N] [--synth "OPTIONS"] [--name NAME] [EXEMPLAR...]
+Usage: quality.py BUILD_FOLDER [--seeds N] [--size X,Y,Z] [--synth "OPTIONS"] [--name NAME] [EXEMPLAR...]
 An exemplar is run if its name contains one of the words. --synth gives options to synth, to choose defaults with."""
 import argparse
 import json
@@ -12,6 +12,7 @@ import struct
 import subprocess
 import sys
 import time
+import zipfile
 import zlib
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
@@ -25,8 +26,11 @@ REAL = {
     "brick": (["convert", "textures/brick.png", "-o", "exemplar.vdb", "--height", 60, "--resolution", 96], "2x,2x,1x", None),
     "gravel": (["convert", "textures/gravel.png", "-o", "exemplar.vdb", "--height", 80, "--resolution", 96], "2x,2x,1x", None),
     "metal": (["convert", "textures/metal.pgm", "-o", "exemplar.vdb", "--height", 32, "--resolution", 96], "2x,2x,1x", None),
+    "ketton": (["convert", "volumes/ketton.zip", "-o", "whole.vdb"], "2x,2x,2x", None),
     "cheese": (["convert", "meshes/cheese.off", "-o", "whole.vdb", "--resolution", 128], "2x,2x,1x", None),
 }
+# What is cut out of a whole model to be the exemplar.
+CROPS = {"cheese": "-63,-63,-56,0,0,-1", "ketton": "64,64,64,159,159,159"}
 PICTURE = (320, 240)
 
 
@@ -94,9 +98,11 @@ class Quality:
             words[1] = os.path.join(SAMPLES, words[1])
             if not os.path.exists(words[1]):
                 return False
+            if words[1].endswith(".zip"):
+                words[1] = zipfile.ZipFile(words[1]).extract(pathlib.Path(words[1]).stem + ".tif", self.folder)
         self.tool(*words)
-        if name == "cheese":  # its intact corner
-            self.tool("crop", "whole.vdb", "-o", "exemplar.vdb", "--box", "-63,-63,-56,0,0,-1")
+        if name in CROPS:
+            self.tool("crop", "whole.vdb", "-o", "exemplar.vdb", "--box", CROPS[name])
         os.replace(self.folder / "exemplar.vdb", self.folder / f"{name}.vdb")
         return True
 
@@ -145,7 +151,7 @@ class Quality:
               f"grad {fields['gradient_error']:.3f}  crumbs {fields['crumbs']:3}  verbatim {100 * fields['verbatim_share']:3.0f} %  {worst}", flush=True)
 
     def finish(self):
-        (self.folder / "quality.json").write_text(json.dumps({"synth": self.arguments.synth, "seeds": self.arguments.seeds,
+        (self.folder / "quality.json").write_text(json.dumps({"synth": self.arguments.synth, "size": self.arguments.size, "seeds": self.arguments.seeds,
                                                               "results": self.results}, indent=1), encoding="utf-8")
         if self.pictures:
             contact_sheet(self.pictures, self.folder / "quality.png")
@@ -157,6 +163,7 @@ def main():
     parser.add_argument("build")
     parser.add_argument("exemplars", nargs="*")
     parser.add_argument("--seeds", type=int, default=2)
+    parser.add_argument("--size", default="", help="of all results, default what suits each exemplar")
     parser.add_argument("--synth", default="")
     parser.add_argument("--name", default="default")
     quality = Quality(parser.parse_intermixed_args())
@@ -165,7 +172,7 @@ def main():
         if quality.arguments.exemplars and not any(word in name for word in quality.arguments.exemplars):
             continue
         try:
-            quality.run(name, words, size, process)
+            quality.run(name, words, quality.arguments.size or size, process)
         except RuntimeError as error:
             print(f"{name:10} failed: {error}", flush=True)
             failures += 1

@@ -22,17 +22,13 @@ struct Link {
 };
 
 // For each exemplar the voxels of the result that are read from it.
-std::vector<std::vector<Link>> linksOf(const SourceMap& map, const std::vector<const LevelSet*>& exemplars,
-                                       const openvdb::FloatGrid& result) {
+std::vector<std::vector<Link>> linksOf(const std::vector<CarriedVoxel>& voxels,
+                                       const std::vector<const LevelSet*>& exemplars) {
     std::vector<std::vector<Link>> links(exemplars.size());
-    for (auto it = result.cbeginValueOn(); it; ++it) {
-        const Index3 voxel = fromCoord(it.getCoord());
-        if (!map.targetDomain.contains(voxel)) continue;
-        const SourceVoxel source = strongestSource(map, voxel);
+    for (const auto& [to, source] : voxels) {
         const openvdb::Vec3d from(source.voxel.x, source.voxel.y, source.voxel.z);
-        links[source.exemplar].push_back({it.getCoord(),
-                                          exemplars[source.exemplar]->grid->transform().indexToWorld(from),
-                                          source.variant});
+        links[source.exemplar].push_back(
+            {toCoord(to), exemplars[source.exemplar]->grid->transform().indexToWorld(from), source.variant});
     }
     return links;
 }
@@ -65,7 +61,7 @@ std::vector<openvdb::Coord> nearSteps() {
     return steps;
 }
 
-// @param into  what another exemplar's grid of the same name became, or null
+// @param into  a grid of the same name and kind to write into, or null
 template <typename Grid>
 GridPtr readThrough(const Grid& grid, const std::vector<Link>& links, const openvdb::FloatGrid& result,
                     const GridPtr& into) {
@@ -98,37 +94,49 @@ GridPtr readThrough(const Grid& grid, const std::vector<Link>& links, const open
     return made;
 }
 
-bool ofSourceMap(const std::string& name) {
+}  // namespace
+
+bool isOfSourceMap(const std::string& name) {
     return name == "source" || name == "exemplar" || name == "vote_source" || name == "vote_weight" ||
            name == "vote_exemplar" || name == "source_rotation" || name == "source_scale";
 }
 
-}  // namespace
-
 std::vector<GridPtr> carryThroughMap(const SourceMap& map, const std::vector<const LevelSet*>& exemplars,
                                      const openvdb::FloatGrid& result, const RunContext& ctx) {
-    std::vector<GridPtr> carried;
     bool any = false;
     for (const LevelSet* exemplar : exemplars) any = any || !exemplar->carried.empty();
-    if (!any) return carried;
+    std::vector<CarriedVoxel> voxels;
+    for (auto it = result.cbeginValueOn(); any && it; ++it) {
+        const Index3 voxel = fromCoord(it.getCoord());
+        if (map.targetDomain.contains(voxel)) voxels.push_back({voxel, strongestSource(map, voxel)});
+    }
+    return carryToVoxels(voxels, exemplars, result, {}, ctx);
+}
+
+std::vector<GridPtr> carryToVoxels(const std::vector<CarriedVoxel>& voxels,
+                                   const std::vector<const LevelSet*>& exemplars,
+                                   const openvdb::FloatGrid& result, std::vector<GridPtr> into,
+                                   const RunContext& ctx) {
+    std::vector<GridPtr> carried = std::move(into);
+    if (voxels.empty()) return carried;
     Stage stage(ctx, "carrying attributes", exemplars.size());
-    const std::vector<std::vector<Link>> links = linksOf(map, exemplars, result);
+    const std::vector<std::vector<Link>> links = linksOf(voxels, exemplars);
     for (std::size_t e = 0; e < exemplars.size(); ++e) {
         for (const GridPtr& grid : exemplars[e]->carried) {
-            if (ofSourceMap(grid->getName())) continue;
+            if (isOfSourceMap(grid->getName())) continue;
             const auto same = std::find_if(carried.begin(), carried.end(), [&](const GridPtr& other) {
                 return other->getName() == grid->getName() && other->type() == grid->type();
             });
-            const GridPtr into = e > 0 && same != carried.end() ? *same : nullptr;
+            const GridPtr existing = same != carried.end() ? *same : nullptr;
             GridPtr made;
             const bool read = grid->transform().isLinear() && grid->apply<Carriable>([&](const auto& typed) {
-                made = readThrough(typed, links[e], result, into);
+                made = readThrough(typed, links[e], result, existing);
             });
             if (!read)
                 message(ctx, MessageLevel::Warning,
                         "grid \"" + grid->getName() + "\" (" + grid->valueType() +
                             ") cannot be carried and is left out");
-            else if (!into)
+            else if (!existing)
                 carried.push_back(made);
         }
         stage.advance();

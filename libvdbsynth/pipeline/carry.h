@@ -15,4 +15,20 @@ namespace vdbsynth {
 std::vector<GridPtr> carryThroughMap(const SourceMap& map, const std::vector<const LevelSet*>& exemplars,
                                      const openvdb::FloatGrid& result, const RunContext& ctx = {});
 
+/// A voxel of a result and what it is read from.
+struct CarriedVoxel {
+    Index3 to;
+    SourceVoxel from;
+};
+
+/// The same for some voxels only. Grids of `into` that are of a carried grid's name and kind are written
+/// into.
+std::vector<GridPtr> carryToVoxels(const std::vector<CarriedVoxel>& voxels,
+                                   const std::vector<const LevelSet*>& exemplars,
+                                   const openvdb::FloatGrid& result, std::vector<GridPtr> into,
+                                   const RunContext& ctx = {});
+
+/// True for the grids that a source map consists of.
+bool isOfSourceMap(const std::string& gridName);
+
 }  // namespace vdbsynth

@@ -4,6 +4,7 @@
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/geometry/point_neighbours.h"
 #include "libvdbsynth/grid/mesh_distance.h"
+#include "libvdbsynth/pipeline/carry.h"
 #include "libvdbsynth/synth/texture_optimization.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/coord.h"
@@ -171,6 +172,37 @@ IndexBox atLeast(IndexBox box, int side) {
     return box;
 }
 
+// The band inside the hole, and what was copied there.
+std::vector<CarriedVoxel> copiedVoxels(const SourceMap& map, const openvdb::FloatGrid& result,
+                                       const openvdb::FloatGrid& hole) {
+    std::vector<CarriedVoxel> voxels;
+    const auto distance = hole.getConstAccessor();
+    for (auto it = result.cbeginValueOn(); it; ++it) {
+        const Index3 voxel = fromCoord(it.getCoord());
+        if (map.targetBox.contains(voxel) && distance.getValue(it.getCoord()) < 0)
+            voxels.push_back({voxel, strongestSource(map, voxel)});
+    }
+    return voxels;
+}
+
+std::vector<GridPtr> sourceGrids(const std::vector<CarriedVoxel>& voxels, const SourceMap& map,
+                                 const openvdb::FloatGrid& result) {
+    auto source = openvdb::Vec3IGrid::create(openvdb::Vec3i(0));
+    source->setName("source");
+    auto exemplar = openvdb::Int32Grid::create(0);
+    exemplar->setName("exemplar");
+    for (const GridPtr& grid : {GridPtr(source), GridPtr(exemplar)}) {
+        grid->setTransform(result.transform().copy());
+        grid->insertMeta("vdbsynth:map:exemplar_hash", openvdb::StringMetadata(map.exemplars.front().hash));
+    }
+    for (const CarriedVoxel& voxel : voxels) {
+        const Index3& from = voxel.from.voxel;
+        source->tree().setValueOn(toCoord(voxel.to), openvdb::Vec3i(from.x, from.y, from.z));
+        exemplar->tree().setValueOn(toCoord(voxel.to), 0);
+    }
+    return {source, exemplar};
+}
+
 // The mesh that a model was made from, in its voxels.
 Mesh inVoxels(const Mesh& source, const openvdb::math::Transform& transform) {
     Mesh mesh = source;
@@ -284,7 +316,7 @@ FillResult fillHoles(const LevelSet& partial, const LevelSet& hole, const LevelS
         field = std::make_shared<const BrickField>(all.known);
     }
     stage.advance();
-    const BlockSynthesisResult filled = optimizeTexture({field}, synthesis, ctx);
+    BlockSynthesisResult filled = optimizeTexture({field}, synthesis, ctx);
     const FloatGridPtr rebuilt =
         closeAndRebuild(joined(around, filled.field, ctx), around.box.min, around.cut, kHalfWidth,
                         *partial.grid, "the filled model", ctx);
@@ -292,6 +324,16 @@ FillResult fillHoles(const LevelSet& partial, const LevelSet& hole, const LevelS
     result.model = partial;
     result.model.grid = replacedAround(*partial.grid, *holeGrid, holeBox, *rebuilt);
     result.stats = filled.stats;
+    SourceMap map;
+    map.patches = std::move(filled.map);
+    map.targetBox = map.targetDomain = around.box;
+    map.exemplars = {{fromBox, from.domain, levelSetHash(*from.grid)}};
+    const std::vector<CarriedVoxel> copied = copiedVoxels(map, *result.model.grid, *holeGrid);
+    result.sources = sourceGrids(copied, map, *result.model.grid);
+    std::vector<GridPtr> kept;
+    for (const GridPtr& grid : partial.carried)
+        if (!isOfSourceMap(grid->getName())) kept.push_back(grid->deepCopyGrid());
+    result.model.carried = carryToVoxels(copied, {&from}, *result.model.grid, std::move(kept), ctx);
     if (!partial.domainRecorded) result.model.domain = solidBox(*result.model.grid, "the filled model");
     stampLevelSet(result.model);
     return result;

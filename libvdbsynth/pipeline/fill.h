@@ -3,6 +3,8 @@
 #include "libvdbsynth/synth/block_synthesis.h"
 #include "libvdbsynth/vdb/level_set.h"
 
+#include <vector>
+
 namespace vdbsynth {
 
 struct FillOptions {
@@ -12,6 +14,9 @@ struct FillOptions {
 
 struct FillResult {
     LevelSet model;
+    /// `source` Vec3I and `exemplar` Int32 on the band inside the hole: the voxel of the exemplar that had
+    /// the most say. There is no map to repeat: the rest of the model is not in it.
+    std::vector<GridPtr> sources;
     BlockSynthesisStats stats;
 };
 
@@ -20,7 +25,8 @@ struct FillResult {
 /// it are bit for bit those of `partial`. Where `partial` has both solid and void in the hole, as behind the
 /// sheet that closed a mesh, that is the first guess, and one pass gives it the model's detail; where it has
 /// but one, as after a box was cut out, nothing is known there and all passes fill it. Distances around the
-/// hole that may mean what is inside do not count.
+/// hole that may mean what is inside do not count. What the partial carries stays; inside the hole it is read
+/// from the exemplar as by carry.h.
 /// @param partial   any model; a recorded domain ends what is known and what is rebuilt
 /// @param hole      level set whose inside is to be filled; any transform of the partial's voxel size
 /// @param exemplar  of the partial's voxel size, its domain; null: the partial outside the hole

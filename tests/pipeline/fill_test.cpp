@@ -62,6 +62,37 @@ std::pair<std::size_t, std::size_t> changes(const LevelSet& before, const LevelS
 
 }  // namespace
 
+TEST_CASE("fillHoles: what the model carries is kept outside the hole and copied inside it",
+          "[pipeline][property]") {
+    const IndexBox domain{{0, 0, 0}, {95, 95, 39}}, box{{36, 40, 8}, {59, 63, 36}};
+    LevelSet partial = carved(domain, true, IndexBox{{37, 41, 9}, {58, 62, 35}},
+                              [](const Index3& p) { return float(p.z) - 19.7f; });
+    auto place = openvdb::Vec3IGrid::create(openvdb::Vec3i(-1));
+    place->setName("place");
+    for (auto it = partial.grid->cbeginValueOn(); it; ++it)
+        place->tree().setValueOn(it.getCoord(), it.getCoord().asVec3i());
+    auto old = openvdb::Vec3IGrid::create();
+    old->setName("source");
+    partial.carried = {place, old};
+    const LevelSet hole = boxHole(partial, box);
+    const FillResult result = fillHoles(partial, hole, nullptr);
+    REQUIRE(result.model.carried.size() == 1);
+    REQUIRE(result.sources.size() == 2);
+    const auto carried = openvdb::gridPtrCast<openvdb::Vec3IGrid>(result.model.carried[0]),
+               source = openvdb::gridPtrCast<openvdb::Vec3IGrid>(result.sources[0]);
+    CHECK(source->activeVoxelCount() > 1000);
+    std::size_t exact = 0;
+    for (auto it = source->cbeginValueOn(); it; ++it) {
+        REQUIRE(hole.grid->tree().getValue(it.getCoord()) < 0);
+        REQUIRE(hole.grid->tree().getValue(openvdb::Coord(*it)) >= 0);  // from outside the hole
+        exact += carried->tree().getValue(it.getCoord()) == *it;
+    }
+    CHECK(double(exact) > 0.8 * double(source->activeVoxelCount()));
+    for (auto it = place->cbeginValueOn(); it; ++it)
+        if (hole.grid->tree().getValue(it.getCoord()) > 0)
+            REQUIRE(carried->tree().getValue(it.getCoord()) == *it);
+}
+
 TEST_CASE("fillHoles: a notch in a slab becomes flat, and all else keeps its bits", "[pipeline][oracle]") {
     const IndexBox domain{{0, 0, 0}, {95, 95, 39}}, box{{36, 40, 8}, {59, 63, 36}};
     const auto slab = [](const Index3& p) { return float(p.z) - 19.7f; };

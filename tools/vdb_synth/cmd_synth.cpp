@@ -111,13 +111,41 @@ LevelSet holeOf(Run& run, const LevelSet& partial, const ModelOptions& like) {
     return run.load(text, options);
 }
 
+// Where --source-map goes.
+struct MapPlace {
+    std::string path;     // empty: nowhere
+    bool inside = false;  // into the .vdb output
+};
+
+MapPlace mapPlaceOf(const Arguments& arguments, const std::vector<std::string>& outputs) {
+    MapPlace place{arguments.text("source-map"), false};
+    place.inside = place.path == kNoValue;
+    bool anyVdb = false;
+    for (const std::string& path : outputs) anyVdb = anyVdb || extensionOf(path) == "vdb";
+    if (place.path.empty()) return place;
+    requireOption(place.inside || extensionOf(place.path) == "vdb", "source-map", place.path, "a .vdb file");
+    if (place.inside && !anyVdb)
+        throw Error(ErrorCode::InvalidOption,
+                    "--source-map: without a file it goes into a .vdb output, and there is none; give "
+                    "--source-map FILE.vdb");
+    return place;
+}
+
+void writeWithMap(Run& run, const LevelSet& model, const std::vector<GridPtr>& map, const MapPlace& place,
+                  const std::vector<std::string>& paths, ModelOutputOptions outputs) {
+    outputs.metadata = run.metadata();
+    if (place.inside) outputs.extraGrids = map;
+    writeModel(model, paths, outputs, run.outputs(), run.context);
+    if (!place.path.empty() && !place.inside) writeVdb(run.outputs().add(place.path), map, outputs.metadata);
+}
+
 // synth [EXEMPLAR] --keep PARTIAL --hole MODEL: more geometry where some is missing.
 void fill(Run& run) {
     const Arguments& arguments = run.arguments;
     run.requireInputs(0, 1);
     for (const char* option :
-         {"size", "border", "exemplar-box", "exemplar-mask", "drift", "draft", "method", "source-map",
-          "which", "guide", "exemplar-guide", "guide-weight", "rotation-map", "scale-map"})
+         {"size", "border", "exemplar-box", "exemplar-mask", "drift", "draft", "method", "which", "guide",
+          "exemplar-guide", "guide-weight", "rotation-map", "scale-map"})
         if (arguments.has(option))
             throw Error(ErrorCode::InvalidOption,
                         std::string("--") + option + ": has no meaning with --keep, which fills holes");
@@ -126,6 +154,7 @@ void fill(Run& run) {
                     "--hole: missing; give a model whose inside is to be filled, a box i,j,k,I,J,K, or auto");
     const std::vector<std::string> paths = run.outputPaths();
     requireOutputPaths(paths);
+    const MapPlace place = mapPlaceOf(arguments, paths);
     FillOptions options;
     options.block = arguments.whole("block", 0, 4, 256);
     options.levels = arguments.whole("levels", 0, 1, 8);
@@ -136,20 +165,22 @@ void fill(Run& run) {
     ModelOptions modelOptions = run.modelOptions();
     modelOptions.halfWidth = 3;
     modelOptions.keepSource = arguments.text("hole") == "auto";
+    modelOptions.carry = true;
     const LevelSet partial = run.load(partialPath, modelOptions);
     // All else is made in the voxels of what is kept.
     modelOptions.voxelSize = voxelSizeOf(*partial.grid);
     modelOptions.resolution = 0;
     modelOptions.keepSource = false;
+    modelOptions.carry = false;
     const LevelSet hole = holeOf(run, partial, modelOptions);
+    modelOptions.carry = true;
     std::optional<LevelSet> exemplar;
     if (!arguments.inputs.empty()) {
         requireModelPath(arguments.inputs[0]);
         exemplar = run.load(arguments.inputs[0], modelOptions);
     }
     const FillResult result = fillHoles(partial, hole, exemplar ? &*exemplar : nullptr, options, run.context);
-    outputs.metadata = run.metadata();
-    writeModel(result.model, paths, outputs, run.outputs(), run.context);
+    writeWithMap(run, result.model, result.sources, place, paths, outputs);
     run.count("block", result.stats.block);
     run.count("levels", result.stats.levels);
     run.count("matches", result.stats.matches);
@@ -221,17 +252,7 @@ void synth(Run& run) {
     requireOutputPaths(paths);
     SynthOptions options = parseOptions(run.arguments);
     requireControls(run.arguments);
-    const std::string mapPath = run.arguments.text("source-map");
-    const bool mapInside = mapPath == kNoValue;
-    bool anyVdb = false;
-    for (const std::string& path : paths) anyVdb = anyVdb || extensionOf(path) == "vdb";
-    if (!mapPath.empty()) {
-        requireOption(mapInside || extensionOf(mapPath) == "vdb", "source-map", mapPath, "a .vdb file");
-        if (mapInside && !anyVdb)
-            throw Error(ErrorCode::InvalidOption,
-                        "--source-map: without a file it goes into a .vdb output, and there is none; give "
-                        "--source-map FILE.vdb");
-    }
+    const MapPlace place = mapPlaceOf(run.arguments, paths);
     ModelOutputOptions outputs;
     outputs.adaptivity = run.arguments.real("adaptivity", 0, 0, 1);
     for (const std::string& path : run.arguments.inputs) requireModelPath(path);
@@ -242,12 +263,9 @@ void synth(Run& run) {
     if (run.arguments.has("exemplar-mask")) options.exemplarMask = run.loadMask("exemplar-mask");
     loadControls(run, voxelSizeOf(*exemplars.front().grid), options);
     const SynthResult result = synthesize(pointersTo(exemplars), options, run.context);
-    outputs.metadata = run.metadata();
-    std::vector<GridPtr> mapGrids;
-    if (!mapPath.empty()) mapGrids = sourceMapGrids(result.map, *result.model.grid, run.context);
-    if (mapInside) outputs.extraGrids = mapGrids;
-    writeModel(result.model, paths, outputs, run.outputs(), run.context);
-    if (!mapPath.empty() && !mapInside) writeVdb(run.outputs().add(mapPath), mapGrids, outputs.metadata);
+    std::vector<GridPtr> map;
+    if (!place.path.empty()) map = sourceMapGrids(result.map, *result.model.grid, run.context);
+    writeWithMap(run, result.model, map, place, paths, outputs);
     run.count("block", result.stats.block);
     run.count("levels", result.stats.levels);
     run.count("matches", result.stats.matches);
@@ -302,7 +320,10 @@ const Command kSynth{
      {"hole", "MODEL",
       "what to fill with --keep: the inside of a model, a box i,j,k,I,J,K of the kept model's voxels, or "
       "auto: a ball round each loop of open edges"},
-     {"source-map", "[FILE.vdb]", "also write the source map, for repeat; without FILE into the .vdb output",
+     {"source-map", "[FILE.vdb]",
+      "also write the source map, for repeat (of a filled hole only what was copied from where); without "
+      "FILE "
+      "into the .vdb output",
       false, 0, ".vdb"},
      {"adaptivity", "A", "0 to 1: merge flat parts of a mesh output, default 0"}},
     synth};

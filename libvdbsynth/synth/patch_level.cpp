@@ -122,22 +122,25 @@ void drawSources(const PatchLevel& level, PatchMap& map, const RunContext& ctx) 
     });
 }
 
-void liftSources(const PatchLevel& level, const PatchMap& coarse, int factor, PatchMap& map) {
-    for (std::size_t i = 0; i < map.source.size(); ++i) {
-        const Index3 origin = map.originOf(map.place(i));
-        Index3 middle;
-        for (int axis = 0; axis < 3; ++axis)
-            middle[axis] = std::min((origin[axis] + map.block / 2) / factor, coarse.target[axis] - 1);
-        const Index3 strongest = strongestBlock(coarse, middle);
-        const std::size_t from = coarse.index(strongest);
-        map.exemplar[i] = coarse.exemplar[from];
-        if (!level.allows(i, map.exemplar[i])) continue;  // keeps what was drawn
-        const IndexBox box = sourcesFor(level, map, std::size_t(map.exemplar[i]), origin);
-        const Index3 source = origin + (coarse.source[from] - coarse.originOf(strongest)) * factor;
-        for (int axis = 0; axis < 3; ++axis)
-            map.source[i][axis] =
-                std::clamp(source[axis], box.min[axis], std::max(box.min[axis], box.max[axis]));
-    }
+void liftSources(const PatchLevel& level, const PatchMap& coarse, int factor, PatchMap& map,
+                 const RunContext& ctx) {
+    parallelFor(ctx, map.source.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Index3 origin = map.originOf(map.place(i));
+            Index3 middle;
+            for (int axis = 0; axis < 3; ++axis)
+                middle[axis] = std::min((origin[axis] + map.block / 2) / factor, coarse.target[axis] - 1);
+            const Index3 strongest = strongestBlock(coarse, middle);
+            const std::size_t from = coarse.index(strongest);
+            if (!level.allows(i, coarse.exemplar[from])) continue;  // keeps what was drawn
+            map.exemplar[i] = coarse.exemplar[from];
+            const IndexBox box = sourcesFor(level, map, std::size_t(map.exemplar[i]), origin);
+            const Index3 source = origin + (coarse.source[from] - coarse.originOf(strongest)) * factor;
+            for (int axis = 0; axis < 3; ++axis)
+                map.source[i][axis] =
+                    std::clamp(source[axis], box.min[axis], std::max(box.min[axis], box.max[axis]));
+        }
+    });
 }
 
 void copyRepeats(const PatchLevel& level, PatchMap& map) {

@@ -53,7 +53,8 @@ void drawSources(const PatchLevel& level, PatchMap& map, const RunContext& ctx);
 
 /// Gives every patch of a map on a lattice of its own the source that another map has where the patch's
 /// middle is, `factor` times the scale apart, or the nearest that it may have.
-void liftSources(const PatchLevel& level, const PatchMap& coarse, int factor, PatchMap& map);
+void liftSources(const PatchLevel& level, const PatchMap& coarse, int factor, PatchMap& map,
+                 const RunContext& ctx);
 
 /// Gives every patch that repeats another its source and weight.
 void copyRepeats(const PatchLevel& level, PatchMap& map);

@@ -276,7 +276,11 @@ RoundCounts improveSources(const PatchLevel& level, const BrickField& field, int
         DenseField slab;
         slab.size = {map.origin(0, last) + map.block - plane, size.y, size.z};
         slab.samples.resize(std::size_t(slab.size.x) * std::size_t(size.y) * std::size_t(size.z));
-        field.readBox({plane, 0, 0}, slab.size, slab.samples.data());
+        const std::size_t planeSamples = std::size_t(size.y) * std::size_t(size.z);
+        parallelFor(ctx, std::size_t(slab.size.x), 4, [&](std::size_t begin, std::size_t end) {
+            field.readBox({plane + int(begin), 0, 0}, {int(end - begin), size.y, size.z},
+                          slab.samples.data() + begin * planeSamples);
+        });
         const std::size_t begun = std::size_t(first) * layer, all = std::size_t(last - first + 1) * layer;
         std::vector<std::uint64_t> compared((all + kPatchesAChunk - 1) / kPatchesAChunk, 0);
         parallelFor(ctx, all, kPatchesAChunk, [&](std::size_t begin, std::size_t end) {

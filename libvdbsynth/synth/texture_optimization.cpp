@@ -211,7 +211,7 @@ private:
                                       mGiven.guides.weight, map.block, mContext);
         const bool guidedStart = first && mOptions.guide;
         if (mOptions.which || guidedStart) drawSources(level, map, mContext);
-        if (!guidedStart) liftSources(level, mMap, first ? 1 : 2, map);
+        if (!guidedStart) liftSources(level, mMap, first ? 1 : 2, map, mContext);
         copyRepeats(level, map);
         // Sources lifted from where nothing is open say nothing, so what is open begins as the coarse result.
         if (!mGiven.open.empty() && !first) mField = doubled(mField, pass.target, mContext);

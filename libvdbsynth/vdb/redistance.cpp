@@ -57,7 +57,7 @@ FloatGridPtr leavesAround(const openvdb::FloatGrid& grid, const IndexBox& box) {
 // A large box in parts that are rebuilt on their own, with sides of whole leaves: meshes and distances of all
 // of it at once take several times the memory of the result.
 std::vector<IndexBox> partsOf(const IndexBox& box) {
-    constexpr int kLongest = 224, kSide = 160;  // [voxels]
+    constexpr int kLongest = 224, kSide = 176;  // [voxels]
     IndexBox whole;
     Index3 side;
     for (int axis = 0; axis < 3; ++axis) {
@@ -84,7 +84,7 @@ FloatGridPtr rebuiltPart(const openvdb::FloatGrid& field, const IndexBox& part, 
     const int rounds = int(std::ceil(halfWidth));
     const float voxel = float(voxelSizeOf(field));
     const Mesh mesh = whole ? zeroLevelInIndexSpace(field, 0, ctx)
-                            : zeroLevelInIndexSpace(*leavesAround(field, part.expanded(rounds + 5)), 0, ctx);
+                            : zeroLevelInIndexSpace(*leavesAround(field, part.expanded(rounds + 3)), 0, ctx);
     if (mesh.faceCount() == 0) {
         if (field.getConstAccessor().getValue(toCoord(part.min)) >= 0) return nullptr;
         return scatterBricks(BrickField(IndexBox::fromSize(part.size()), -halfWidth), part.min, voxel,

@@ -25,7 +25,7 @@ TEST_CASE("liftSources: a coarse copy becomes a fine one, within the exemplar", 
         for (int axis = 0; axis < 3; ++axis)
             coarse.source[i][axis] = std::clamp(coarse.originOf(coarse.place(i))[axis] + shift[axis], 0, 18);
     const PatchLevel level = patchLevel(pass, options, fine, {}, nullptr, {});
-    liftSources(level, coarse, 2, fine);
+    liftSources(level, coarse, 2, fine, {});
     for (std::size_t i = 0; i < fine.source.size(); ++i) {
         const Index3 l = fine.place(i), origin = fine.originOf(l);
         REQUIRE(IndexBox{{0, 0, 0}, {40, 40, 40}}.contains(fine.source[i]));

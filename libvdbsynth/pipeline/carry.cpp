@@ -1,5 +1,6 @@
 #include "libvdbsynth/pipeline/carry.h"
 
+#include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/vdb/coord.h"
 
 #include <openvdb/openvdb.h>
@@ -105,12 +106,21 @@ std::vector<GridPtr> carryThroughMap(const SourceMap& map, const std::vector<con
                                      const openvdb::FloatGrid& result, const RunContext& ctx) {
     bool any = false;
     for (const LevelSet* exemplar : exemplars) any = any || !exemplar->carried.empty();
+    if (!any) return {};
+    return carryToVoxels(strongestSources(map, result, ctx), exemplars, result, {}, ctx);
+}
+
+std::vector<CarriedVoxel> strongestSources(const SourceMap& map, const openvdb::FloatGrid& result,
+                                           const RunContext& ctx) {
     std::vector<CarriedVoxel> voxels;
-    for (auto it = result.cbeginValueOn(); any && it; ++it) {
+    for (auto it = result.cbeginValueOn(); it; ++it) {
         const Index3 voxel = fromCoord(it.getCoord());
-        if (map.targetDomain.contains(voxel)) voxels.push_back({voxel, strongestSource(map, voxel)});
+        if (map.targetDomain.contains(voxel)) voxels.push_back({voxel, {}});
     }
-    return carryToVoxels(voxels, exemplars, result, {}, ctx);
+    parallelFor(ctx, voxels.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) voxels[i].from = strongestSource(map, voxels[i].to);
+    });
+    return voxels;
 }
 
 std::vector<GridPtr> carryToVoxels(const std::vector<CarriedVoxel>& voxels,

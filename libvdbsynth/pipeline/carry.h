@@ -21,8 +21,12 @@ struct CarriedVoxel {
     SourceVoxel from;
 };
 
-/// The same for some voxels only. Grids of `into` that are of a carried grid's name and kind are written
-/// into.
+/// Every active voxel of a result inside the map's domain. @par Cost O(active voxels * (block / stride)^3)
+std::vector<CarriedVoxel> strongestSources(const SourceMap& map, const openvdb::FloatGrid& result,
+                                           const RunContext& ctx = {});
+
+/// carryThroughMap for some voxels only. Grids of `into` that are of a carried grid's name and kind are
+/// written into.
 std::vector<GridPtr> carryToVoxels(const std::vector<CarriedVoxel>& voxels,
                                    const std::vector<const LevelSet*>& exemplars,
                                    const openvdb::FloatGrid& result, std::vector<GridPtr> into,

@@ -1,6 +1,7 @@
 // The source map as grids of a VDB file, and back.
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/pipeline/carry.h"
 #include "libvdbsynth/pipeline/synth.h"
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/vdb_file.h"
@@ -224,17 +225,14 @@ std::vector<GridPtr> sourceMapGrids(const SourceMap& map, const openvdb::FloatGr
     scale->setName("source_scale");
     scale->setTransform(result.transform().copy());
     auto scaleAccessor = scale->getAccessor();
-    for (auto it = result.cbeginValueOn(); it; ++it) {
-        const Index3 voxel = fromCoord(it.getCoord());
-        if (!map.targetDomain.contains(voxel)) continue;
-        const SourceVoxel from = strongestSource(map, voxel);
-        sourceAccessor.setValueOn(it.getCoord(), openvdb::Vec3i(from.voxel.x, from.voxel.y, from.voxel.z));
-        exemplarAccessor.setValueOn(it.getCoord(), int(from.exemplar));
+    for (const auto& [to, from] : strongestSources(map, result, ctx)) {
+        const openvdb::Coord at = toCoord(to);
+        sourceAccessor.setValueOn(at, openvdb::Vec3i(from.voxel.x, from.voxel.y, from.voxel.z));
+        exemplarAccessor.setValueOn(at, int(from.exemplar));
         if (!from.variant) continue;
         const Vec3d& turn = from.variant->rotation;
-        rotationAccessor.setValueOn(it.getCoord(),
-                                    openvdb::Vec3f(float(turn.x), float(turn.y), float(turn.z)));
-        scaleAccessor.setValueOn(it.getCoord(), float(from.variant->scale));
+        rotationAccessor.setValueOn(at, openvdb::Vec3f(float(turn.x), float(turn.y), float(turn.z)));
+        scaleAccessor.setValueOn(at, float(from.variant->scale));
     }
     stage.advance();
     std::vector<GridPtr> grids{source, exemplar, votes, weights};

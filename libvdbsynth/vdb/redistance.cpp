@@ -31,6 +31,50 @@ BrickField withSigns(const BrickField& distance, const Index3& distanceOffset, c
     });
 }
 
+constexpr float kKept = 0.2f;    // [voxels] by which a distance may be beside the mesh's and stay as it is
+constexpr float kUneven = 0.3f;  // by which a gradient's length may be off 1 where distances stay
+
+// True if the field is one of distances around a sample: its gradient, central or upwind, is about 1 long.
+// `value` points into a padded brick.
+bool isDistance(const float* value, const std::ptrdiff_t (&stride)[3]) {
+    const float sign = *value < 0 ? -1.f : 1.f;
+    float central = 0, upwind = 0;
+    for (const std::ptrdiff_t step : stride) {
+        const float across = (value[step] - value[-step]) / 2;
+        const float drop = std::max({0.f, sign * (*value - value[-step]), sign * (*value - value[step])});
+        central += across * across;
+        upwind += drop * drop;
+    }
+    return std::min(std::abs(std::sqrt(central) - 1), std::abs(std::sqrt(upwind) - 1)) < kUneven;
+}
+
+// Distances to a mesh with the signs of the field that was meshed, both read at an offset; the result begins
+// at 0. Where the field has good distances of its own they stay: a mesh of its zero level lies inside what is
+// round, by a tenth of a voxel where it is as thin as three, and so do distances to it. Those further off
+// than kKept are the mesh's, those between once and twice that go over from one to the other.
+// @param band  [voxels] where the field's distances end
+BrickField keepingDistances(const BrickField& toMesh, const Index3& meshOffset, const BrickField& field,
+                            const Index3& fieldOffset, const Index3& size, float band,
+                            const RunContext& ctx) {
+    return BrickField::generate(IndexBox::fromSize(size), ctx, [&](const IndexBox& brick, float* samples) {
+        constexpr int kPadded = BrickField::kSide + 2;
+        constexpr std::ptrdiff_t kStride[3] = {kPadded * kPadded, kPadded, 1};
+        float padded[kPadded * kPadded * kPadded];
+        field.readBox(brick.min + fieldOffset - Index3{1, 1, 1}, {kPadded, kPadded, kPadded}, padded);
+        toMesh.readBox(brick.min + meshOffset, kBrickSize, samples);
+        for (int x = 1; x <= BrickField::kSide; ++x)
+            for (int y = 1; y <= BrickField::kSide; ++y)
+                for (int z = 1; z <= BrickField::kSide; ++z, ++samples) {
+                    const float* value = padded + (x * kPadded + y) * kPadded + z;
+                    const float own = std::abs(*value), off = own - *samples;
+                    if (std::abs(off) < 2 * kKept && own < band - 1 && isDistance(value, kStride))
+                        *samples +=
+                            std::abs(off) <= kKept ? off : std::copysign(2 * kKept - std::abs(off), off);
+                    if (*value < 0) *samples = -*samples;
+                }
+    });
+}
+
 using Tree = openvdb::FloatTree;
 using Leaf = Tree::LeafNodeType;
 
@@ -80,7 +124,7 @@ std::vector<IndexBox> partsOf(const IndexBox& box) {
 // box: faces that could be nearest to any of its voxels, and what they are found through, lie within the
 // reach.
 FloatGridPtr rebuiltPart(const openvdb::FloatGrid& field, const IndexBox& part, bool whole, float halfWidth,
-                         const RunContext& ctx) {
+                         bool distances, const RunContext& ctx) {
     const int rounds = int(std::ceil(halfWidth));
     const float voxel = float(voxelSizeOf(field));
     const Mesh mesh = whole ? zeroLevelInIndexSpace(field, 0, ctx)
@@ -91,8 +135,10 @@ FloatGridPtr rebuiltPart(const openvdb::FloatGrid& field, const IndexBox& part, 
                              halfWidth, ctx);
     }
     const BrickField distance = meshDistance(mesh, part.expanded(rounds + 1), halfWidth, ctx);
-    const BrickField sign = gatherBricks(field, part, 1 / voxel, kHalfWidth, ctx);
-    const BrickField values = withSigns(distance, part.min, sign, {0, 0, 0}, part.size(), ctx);
+    const BrickField own = gatherBricks(field, part.expanded(1), 1 / voxel, kHalfWidth, ctx);
+    const BrickField values =
+        distances ? keepingDistances(distance, part.min, own, {1, 1, 1}, part.size(), kHalfWidth, ctx)
+                  : withSigns(distance, part.min, own, {1, 1, 1}, part.size(), ctx);
     return scatterBricks(values, part.min, voxel, halfWidth, ctx);
 }
 
@@ -109,8 +155,10 @@ void take(openvdb::FloatGrid& from, openvdb::FloatGrid& to) {
 
 }  // namespace
 
-FloatGridPtr rebuildLevelSet(const openvdb::FloatGrid& field, float halfWidth, const std::string& what,
-                             const RunContext& ctx) {
+namespace {
+
+FloatGridPtr rebuilt(const openvdb::FloatGrid& field, float halfWidth, bool distances,
+                     const std::string& what, const RunContext& ctx) {
     const openvdb::CoordBBox active = field.evalActiveVoxelBoundingBox();
     if (active.empty()) throw Error(ErrorCode::EmptyInput, what + " has no surface");
     const int reach = int(std::ceil(halfWidth)) + 1;
@@ -121,12 +169,12 @@ FloatGridPtr rebuildLevelSet(const openvdb::FloatGrid& field, float halfWidth, c
     constexpr std::size_t kBatch = 8;  // parts between two looks at the clock
     for (std::size_t first = 0; first < parts.size(); first += kBatch) {
         const std::size_t count = std::min(kBatch, parts.size() - first);
-        std::vector<FloatGridPtr> rebuilt(count);
+        std::vector<FloatGridPtr> made(count);
         parallelFor(ctx, count, 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
-                rebuilt[i] = rebuiltPart(field, parts[first + i], parts.size() == 1, halfWidth, ctx);
+                made[i] = rebuiltPart(field, parts[first + i], parts.size() == 1, halfWidth, distances, ctx);
         });
-        for (const FloatGridPtr& part : rebuilt)
+        for (const FloatGridPtr& part : made)
             if (part) take(*part, *grid);
         stage.advance(count);
     }
@@ -136,6 +184,13 @@ FloatGridPtr rebuildLevelSet(const openvdb::FloatGrid& field, float halfWidth, c
     grid->setGridClass(openvdb::GRID_LEVEL_SET);
     stage.advance();
     return grid;
+}
+
+}  // namespace
+
+FloatGridPtr rebuildLevelSet(const openvdb::FloatGrid& field, float halfWidth, const std::string& what,
+                             const RunContext& ctx) {
+    return rebuilt(field, halfWidth, false, what, ctx);
 }
 
 namespace {
@@ -177,7 +232,8 @@ BrickField widenBand(const openvdb::FloatGrid& levelSet, const IndexBox& domain,
     const NarrowField narrow = gatherNarrow(levelSet, domain, cut, int(std::ceil(halfWidth)) + 2, ctx);
     const Mesh mesh = zeroLevelAround(narrow.field, narrow.domain, halfWidth, ctx);
     const BrickField distance = meshDistance(mesh, narrow.domain, halfWidth, ctx);
-    return withSigns(distance, narrow.domain.min, narrow.field, narrow.domain.min, domain.size(), ctx);
+    return keepingDistances(distance, narrow.domain.min, narrow.field, narrow.domain.min, domain.size(),
+                            kHalfWidth, ctx);
 }
 
 BrickField widenBandCoarse(const openvdb::FloatGrid& levelSet, const IndexBox& domain, const CutFaces& cut,
@@ -226,7 +282,7 @@ FloatGridPtr closeAndRebuild(const BrickField& field, const Index3& corner, cons
     FloatGridPtr grid = scatterBricks(closed, corner, float(voxelSizeOf(like)), limit, ctx);
     closed = BrickField();
     grid->setTransform(like.transform().copy());
-    return rebuildLevelSet(*grid, halfWidth, what, ctx);
+    return rebuilt(*grid, halfWidth, true, what, ctx);
 }
 
 namespace {

@@ -101,6 +101,40 @@ TEST_CASE("widenBand: wide distances agree with the true ones, and the narrow ba
     }
 }
 
+TEST_CASE("closeAndRebuild, widenBand: a thin bar's distances stay as they are, others are made anew",
+          "[vdb][oracle]") {
+    // A bar of radius 1.4: a mesh of its zero level is a tenth of a voxel thinner.
+    const auto bar = [](float slope) {
+        return test::fieldFrom({40, 40, 40}, [=](const Index3& p) {
+            const double d = std::hypot(p.y - 19.3, p.z - 19.6) - 1.4;
+            return float(std::clamp(slope * d, -8.0, 8.0));
+        });
+    };
+    const auto like = openvdb::FloatGrid::create(3.f);
+    const FloatGridPtr grid = closeAndRebuild(bar(1), {0, 0, 0}, kAllCut, 3.f, *like, "bar");
+    const BrickField own = bar(1), wide = widenBand(*grid, {{0, 0, 0}, {39, 39, 39}}, kAllCut, 8.f);
+    std::size_t kept = 0, all = 0;
+    for (int x = 8; x < 32; ++x)
+        for (int y = 0; y < 40; ++y)
+            for (int z = 0; z < 40; ++z) {
+                const float expected = own.at({x, y, z});
+                if (std::abs(expected) >= 1) continue;
+                ++all;
+                kept += std::abs(grid->tree().getValue({x, y, z}) - expected) < 1e-4f &&
+                                std::abs(wide.at({x, y, z}) - expected) < 1e-4f
+                            ? 1
+                            : 0;
+            }
+    CHECK(all > 300);
+    CHECK(double(kept) > 0.85 * double(all));  // not beside the axis, where the gradient has a kink
+    // A field of half the slope is no distance: its values come from the mesh.
+    const FloatGridPtr anew = closeAndRebuild(bar(0.5f), {0, 0, 0}, kAllCut, 3.f, *like, "bar");
+    double slope = 0;
+    for (int x = 8; x < 32; ++x)
+        slope += double(anew->tree().getValue({x, 19, 23}) - anew->tree().getValue({x, 19, 22})) / 24;
+    CHECK(slope == Approx(1).margin(0.05));
+}
+
 TEST_CASE("widenBand: caps of a clipped model do not count", "[vdb][property]") {
     // A rod along x, clipped at both ends; without its caps it goes on for ever.
     const BrickField rod = test::fieldFrom({40, 40, 40}, [](const Index3& p) {

@@ -45,9 +45,9 @@ class BadOptions(CliTest):
             ("mask blob: unknown kind", ["mask", "blob", "-o", "x.vdb"]),
             ("--box: missing", ["crop", "g.vdb", "-o", "x.vdb"]),
             ("needs a value", ["convert", "g.vdb", "-o"]),
-            ("--exemplar-mask m.png: a mask is a .vdb", ["synth", "g.vdb", "-o", "x.vdb", "--size", "2x,2x,2x",
+            ("--exemplar-mask m.png: give a .vdb", ["synth", "g.vdb", "-o", "x.vdb", "--size", "2x,2x,2x",
                                                          "--exemplar-mask", "m.png"]),
-            ("--mask m.png: a mask is a .vdb", ["match", "g.vdb", "g.vdb", "--at", "0,0,0", "--mask", "m.png"]),
+            ("--mask m.png: give a .vdb", ["match", "g.vdb", "g.vdb", "--at", "0,0,0", "--mask", "m.png"]),
             ("--view 1e300,0,0", ["render", "g.vdb", "-o", "x.png", "--view", "1e300,0,0"]),
         ]
         for says, words in cases:

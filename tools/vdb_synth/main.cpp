@@ -97,9 +97,13 @@ void limitMemory(std::uint64_t bytes) {
 #endif
 }
 
-// What was printed, if it arrived.
+// True if all that was printed arrived. More than a buffer is written, and fails, before the flush.
+bool arrived() {
+    return std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+}
+
 int printed() {
-    if (std::fflush(stdout) == 0) return 0;
+    if (arrived()) return 0;
     return fail(Error(ErrorCode::Io, "standard output cannot be written"), "");
 }
 
@@ -113,7 +117,7 @@ int execute(const Command& command, const Arguments& arguments, const Supervisor
             // Errors speak of outputs, not of their temporary names.
             throw Error(error.code(), run.withoutTemporaries(error.what()));
         }
-        if (std::fflush(stdout) != 0) throw Error(ErrorCode::Io, "standard output cannot be written");
+        if (!arrived()) throw Error(ErrorCode::Io, "standard output cannot be written");
         return 0;
     } catch (const Error& error) {
         return fail(error, command.name);

@@ -97,6 +97,20 @@ GridPtr readThrough(const Grid& grid, const std::vector<Link>& links, const open
 
 }  // namespace
 
+bool carries(const LevelSet& model, const std::string& name) {
+    return std::any_of(model.carried.begin(), model.carried.end(),
+                       [&](const GridPtr& grid) { return grid->getName() == name; });
+}
+
+void keepCarriedNames(LevelSet& model, const std::vector<std::string>& names) {
+    model.carried.erase(std::remove_if(model.carried.begin(), model.carried.end(),
+                                       [&](const GridPtr& grid) {
+                                           return std::find(names.begin(), names.end(), grid->getName()) ==
+                                                  names.end();
+                                       }),
+                        model.carried.end());
+}
+
 bool isOfSourceMap(const std::string& name) {
     return name == "source" || name == "exemplar" || name == "vote_source" || name == "vote_weight" ||
            name == "vote_exemplar" || name == "source_rotation" || name == "source_scale";

@@ -32,6 +32,11 @@ std::vector<GridPtr> carryToVoxels(const std::vector<CarriedVoxel>& voxels,
                                    const openvdb::FloatGrid& result, std::vector<GridPtr> into,
                                    const RunContext& ctx = {});
 
+/// True if a model carries something of that name.
+bool carries(const LevelSet& model, const std::string& name);
+/// Leaves behind what a model carries of other names.
+void keepCarriedNames(LevelSet& model, const std::vector<std::string>& names);
+
 /// True for the grids that a source map consists of.
 bool isOfSourceMap(const std::string& gridName);
 

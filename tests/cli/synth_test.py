@@ -66,6 +66,9 @@ class Synth(CliTest):
         self.assertIn(b"property uchar red", self.read("m.ply")[:600])
         self.ok("repeat", "m.vdb", "c.obj", "-o", "again.ply", "--voxel-size", 1)
         self.assertEqual(self.read("again.ply"), self.read("m.ply"))
+        self.ok("synth", "c.obj", "-o", "n.ply", "--voxel-size", 1, "--exemplar-box", "0,0,0,31,31,31", "--size", "2x,1x,1x", "--carry", "Cd")
+        self.assertEqual(self.read("n.ply"), self.read("m.ply"))
+        self.fails(2, "--carry colour", "synth", "c.obj", "-o", "n.ply", "--voxel-size", 1, "--exemplar-box", "0,0,0,31,31,31", "--size", "2x,1x,1x", "--carry", "colour")
 
     def test_holes_of_real_meshes(self):
         for name, folder in (("camelhead.off", "meshes"), ("elephant-with-holes.off", "bad")):

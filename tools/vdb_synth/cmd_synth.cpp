@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
+#include "libvdbsynth/pipeline/carry.h"
 #include "libvdbsynth/pipeline/control.h"
 #include "libvdbsynth/pipeline/fill.h"
 #include "libvdbsynth/pipeline/outputs.h"
@@ -144,8 +145,8 @@ void fill(Run& run) {
     const Arguments& arguments = run.arguments;
     run.requireInputs(0, 1);
     for (const char* option :
-         {"size", "border", "exemplar-box", "exemplar-mask", "drift", "draft", "method", "which", "guide",
-          "exemplar-guide", "guide-weight", "rotation-map", "scale-map"})
+         {"size", "border", "exemplar-box", "exemplar-mask", "drift", "draft", "method", "carry", "which",
+          "guide", "exemplar-guide", "guide-weight", "rotation-map", "scale-map"})
         if (arguments.has(option))
             throw Error(ErrorCode::InvalidOption,
                         std::string("--") + option + ": has no meaning with --keep, which fills holes");
@@ -216,6 +217,18 @@ std::vector<LevelSet> loadExemplars(Run& run, ModelOptions options) {
     return exemplars;
 }
 
+// --carry: all that comes with the exemplars, or what is named.
+void keepCarried(const Run& run, std::vector<LevelSet>& exemplars) {
+    const std::string text = run.arguments.text("carry", "all");
+    if (text == "all") return;
+    for (const std::string& name : split(text)) {
+        bool found = false;
+        for (const LevelSet& exemplar : exemplars) found = found || carries(exemplar, name);
+        requireOption(found, "carry", name, "all, or names of what comes with the exemplar");
+    }
+    for (LevelSet& exemplar : exemplars) keepCarriedNames(exemplar, split(text));
+}
+
 std::vector<const LevelSet*> pointersTo(const std::vector<LevelSet>& models) {
     std::vector<const LevelSet*> pointers;
     for (const LevelSet& model : models) pointers.push_back(&model);
@@ -259,7 +272,8 @@ void synth(Run& run) {
     ModelOptions modelOptions = run.modelOptions();
     modelOptions.halfWidth = 3;
     modelOptions.carry = true;
-    const std::vector<LevelSet> exemplars = loadExemplars(run, modelOptions);
+    std::vector<LevelSet> exemplars = loadExemplars(run, modelOptions);
+    keepCarried(run, exemplars);
     if (run.arguments.has("exemplar-mask")) options.exemplarMask = run.loadMask("exemplar-mask");
     loadControls(run, voxelSizeOf(*exemplars.front().grid), options);
     const SynthResult result = synthesize(pointersTo(exemplars), options, run.context);
@@ -325,6 +339,8 @@ const Command kSynth{
       "FILE "
       "into the .vdb output",
       false, 0, ".vdb"},
+     {"carry", "NAMES",
+      "which attributes and grids of the exemplar come along: all (default), or names with commas"},
      {"adaptivity", "A", "0 to 1: merge flat parts of a mesh output, default 0"}},
     synth};
 

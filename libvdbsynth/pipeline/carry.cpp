@@ -1,6 +1,5 @@
 #include "libvdbsynth/pipeline/carry.h"
 
-#include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/vdb/coord.h"
 
 #include <openvdb/openvdb.h>
@@ -23,7 +22,7 @@ struct Link {
 };
 
 // For each exemplar the voxels of the result that are read from it.
-std::vector<std::vector<Link>> linksOf(const std::vector<CarriedVoxel>& voxels,
+std::vector<std::vector<Link>> linksOf(const std::vector<MappedVoxel>& voxels,
                                        const std::vector<const LevelSet*>& exemplars) {
     std::vector<std::vector<Link>> links(exemplars.size());
     for (const auto& [to, source] : voxels) {
@@ -124,20 +123,7 @@ std::vector<GridPtr> carryThroughMap(const SourceMap& map, const std::vector<con
     return carryToVoxels(strongestSources(map, result, ctx), exemplars, result, {}, ctx);
 }
 
-std::vector<CarriedVoxel> strongestSources(const SourceMap& map, const openvdb::FloatGrid& result,
-                                           const RunContext& ctx) {
-    std::vector<CarriedVoxel> voxels;
-    for (auto it = result.cbeginValueOn(); it; ++it) {
-        const Index3 voxel = fromCoord(it.getCoord());
-        if (map.targetDomain.contains(voxel)) voxels.push_back({voxel, {}});
-    }
-    parallelFor(ctx, voxels.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) voxels[i].from = strongestSource(map, voxels[i].to);
-    });
-    return voxels;
-}
-
-std::vector<GridPtr> carryToVoxels(const std::vector<CarriedVoxel>& voxels,
+std::vector<GridPtr> carryToVoxels(const std::vector<MappedVoxel>& voxels,
                                    const std::vector<const LevelSet*>& exemplars,
                                    const openvdb::FloatGrid& result, std::vector<GridPtr> into,
                                    const RunContext& ctx) {

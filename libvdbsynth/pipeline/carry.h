@@ -15,19 +15,9 @@ namespace vdbsynth {
 std::vector<GridPtr> carryThroughMap(const SourceMap& map, const std::vector<const LevelSet*>& exemplars,
                                      const openvdb::FloatGrid& result, const RunContext& ctx = {});
 
-/// A voxel of a result and what it is read from.
-struct CarriedVoxel {
-    Index3 to;
-    SourceVoxel from;
-};
-
-/// Every active voxel of a result inside the map's domain. @par Cost O(active voxels * (block / stride)^3)
-std::vector<CarriedVoxel> strongestSources(const SourceMap& map, const openvdb::FloatGrid& result,
-                                           const RunContext& ctx = {});
-
 /// carryThroughMap for some voxels only. Grids of `into` that are of a carried grid's name and kind are
 /// written into.
-std::vector<GridPtr> carryToVoxels(const std::vector<CarriedVoxel>& voxels,
+std::vector<GridPtr> carryToVoxels(const std::vector<MappedVoxel>& voxels,
                                    const std::vector<const LevelSet*>& exemplars,
                                    const openvdb::FloatGrid& result, std::vector<GridPtr> into,
                                    const RunContext& ctx = {});

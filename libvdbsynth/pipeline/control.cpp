@@ -123,7 +123,7 @@ GridPtr asControl(const FloatGridPtr& grid) {
 
 BrickField sampledScalar(const openvdb::GridBase& grid, const ControlFrame& frame, const std::string& what,
                          const RunContext& ctx) {
-    scalarReader(grid, true, what);
+    scalarReader(grid, true, what);  // a grid of a wrong kind is refused here, not in a worker
     return BrickField::generate(
         IndexBox::fromSize(frame.box.size()), ctx, [&](const IndexBox& brick, float* samples) {
             const Reader reader = scalarReader(grid, true, what);
@@ -146,7 +146,7 @@ std::vector<WantedVariant> wantedVariants(const openvdb::GridBase* which, const 
         made.exemplars = exemplars;
         return made;
     };
-    readers();
+    readers();  // grids of a wrong kind are refused here, not in a worker
     const Index3 cells = cellsOf(frame.box);
     std::vector<WantedVariant> wanted(std::size_t(cells.x) * std::size_t(cells.y) * std::size_t(cells.z));
     parallelFor(ctx, wanted.size(), 4096, [&](std::size_t begin, std::size_t end) {

@@ -173,9 +173,9 @@ IndexBox atLeast(IndexBox box, int side) {
 }
 
 // The band inside the hole, and what was copied there.
-std::vector<CarriedVoxel> copiedVoxels(const SourceMap& map, const openvdb::FloatGrid& result,
-                                       const openvdb::FloatGrid& hole) {
-    std::vector<CarriedVoxel> voxels;
+std::vector<MappedVoxel> copiedVoxels(const SourceMap& map, const openvdb::FloatGrid& result,
+                                      const openvdb::FloatGrid& hole) {
+    std::vector<MappedVoxel> voxels;
     const auto distance = hole.getConstAccessor();
     for (auto it = result.cbeginValueOn(); it; ++it) {
         const Index3 voxel = fromCoord(it.getCoord());
@@ -185,7 +185,7 @@ std::vector<CarriedVoxel> copiedVoxels(const SourceMap& map, const openvdb::Floa
     return voxels;
 }
 
-std::vector<GridPtr> sourceGrids(const std::vector<CarriedVoxel>& voxels, const SourceMap& map,
+std::vector<GridPtr> sourceGrids(const std::vector<MappedVoxel>& voxels, const SourceMap& map,
                                  const openvdb::FloatGrid& result) {
     auto source = openvdb::Vec3IGrid::create(openvdb::Vec3i(0));
     source->setName("source");
@@ -195,7 +195,7 @@ std::vector<GridPtr> sourceGrids(const std::vector<CarriedVoxel>& voxels, const 
         grid->setTransform(result.transform().copy());
         grid->insertMeta("vdbsynth:map:exemplar_hash", openvdb::StringMetadata(map.exemplars.front().hash));
     }
-    for (const CarriedVoxel& voxel : voxels) {
+    for (const MappedVoxel& voxel : voxels) {
         const Index3& from = voxel.from.voxel;
         source->tree().setValueOn(toCoord(voxel.to), openvdb::Vec3i(from.x, from.y, from.z));
         exemplar->tree().setValueOn(toCoord(voxel.to), 0);
@@ -328,7 +328,7 @@ FillResult fillHoles(const LevelSet& partial, const LevelSet& hole, const LevelS
     map.patches = std::move(filled.map);
     map.targetBox = map.targetDomain = around.box;
     map.exemplars = {{fromBox, from.domain, levelSetHash(*from.grid)}};
-    const std::vector<CarriedVoxel> copied = copiedVoxels(map, *result.model.grid, *holeGrid);
+    const std::vector<MappedVoxel> copied = copiedVoxels(map, *result.model.grid, *holeGrid);
     result.sources = sourceGrids(copied, map, *result.model.grid);
     std::vector<GridPtr> kept;
     for (const GridPtr& grid : partial.carried)

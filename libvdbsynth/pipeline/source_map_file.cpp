@@ -1,7 +1,6 @@
 // The source map as grids of a VDB file, and back.
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
-#include "libvdbsynth/pipeline/carry.h"
 #include "libvdbsynth/pipeline/synth.h"
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/vdb_file.h"

@@ -7,6 +7,7 @@
 #include "libvdbsynth/pipeline/control.h"
 #include "libvdbsynth/pipeline/synth_steps.h"
 #include "libvdbsynth/synth/texture_optimization.h"
+#include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/mask.h"
 
 #include <openvdb/openvdb.h>
@@ -208,6 +209,19 @@ SourceVoxel strongestSource(const SourceMap& map, const Index3& voxel) {
     const Vec3d p = inExemplar(*source.variant, box.size(), {double(from.x), double(from.y), double(from.z)});
     for (int axis = 0; axis < 3; ++axis) source.voxel[axis] = box.min[axis] + int(std::lround(p[axis]));
     return source;
+}
+
+std::vector<MappedVoxel> strongestSources(const SourceMap& map, const openvdb::FloatGrid& result,
+                                          const RunContext& ctx) {
+    std::vector<MappedVoxel> voxels;
+    for (auto it = result.cbeginValueOn(); it; ++it) {
+        const Index3 voxel = fromCoord(it.getCoord());
+        if (map.targetDomain.contains(voxel)) voxels.push_back({voxel, {}});
+    }
+    parallelFor(ctx, voxels.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) voxels[i].from = strongestSource(map, voxels[i].to);
+    });
+    return voxels;
 }
 
 namespace {

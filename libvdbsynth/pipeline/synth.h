@@ -65,6 +65,17 @@ struct SourceVoxel {
 /// What has the most say at a voxel of the target's domain; with a variant the nearest voxel.
 SourceVoxel strongestSource(const SourceMap& map, const Index3& voxel);
 
+/// A voxel of a result and what has the most say there.
+struct MappedVoxel {
+    Index3 to;
+    SourceVoxel from;
+};
+
+/// strongestSource of every active voxel of a result inside the map's domain.
+/// @par Cost    O(active voxels * (block / stride)^3)   @par Repeats same bits for any number of threads
+std::vector<MappedVoxel> strongestSources(const SourceMap& map, const openvdb::FloatGrid& result,
+                                          const RunContext& ctx = {});
+
 struct SynthResult {
     LevelSet model;
     SourceMap map;

@@ -104,6 +104,7 @@ CrumbLimits crumbLimits(const SourceMap& map, const ExemplarFields& exemplars, b
 void removeCrumbs(const SourceMap& map, const ExemplarFields& exemplars, BrickField& field,
                   const RunContext& ctx) {
     constexpr float kLeast = 0.1f;  // [voxels] so that a voxel has its new side for certain
+    Stage stage(ctx, "removing crumbs", 2);
     for (const bool ofVoid : {false, true}) {
         const CrumbLimits limits = crumbLimits(map, exemplars, ofVoid, ctx);
         const Occupancy solid = Occupancy::fromField(field, ctx);
@@ -117,6 +118,7 @@ void removeCrumbs(const SourceMap& map, const ExemplarFields& exemplars, BrickFi
         message(ctx, MessageLevel::Detail,
                 std::to_string(crumbs.size()) + " voxels of crumbs of the " + (ofVoid ? "void" : "solid") +
                     " changed sides");
+        stage.advance();
     }
 }
 

@@ -15,8 +15,8 @@ namespace vdbsynth {
 ///  - a source used more often than the exemplar's surface would be on average costs more [kaspar2015,
 ///    section 3.3], so that all of the exemplar is used and shares of volume stay;
 ///  - a source costs a tenth less for each of the six neighbours whose source it goes on from: where costs
-///  are
-///    alike, as in what is rough throughout, larger copies keep the roughness that a vote would smooth.
+///    are alike, as in what is rough throughout, larger copies keep the roughness that a vote would smooth.
+/// Where options.which names an exemplar, sources of another one are not taken; options.guide adds to a cost.
 /// Patches are as long as the block in the last pass, three quarters of it before, and never more than half
 /// of the exemplar.
 ///

@@ -441,6 +441,26 @@ TEST_CASE("synthesize: same bits for any number of threads", "[pipeline][determi
     CHECK(run(1) == run(2));
 }
 
+TEST_CASE("synthesize: controls give the same bits for any number of threads, and can be cancelled",
+          "[pipeline][determinism][cancel]") {
+    const LevelSet balls = made("balls"), grid = made("grid");
+    SynthOptions options = sized(1.5, 2, 1);
+    options.which = boxGrid({{0, 0, 0}, {39, 79, 39}}, 1);
+    options.rotation = boxGrid({{0, 0, 0}, {59, 30, 39}}, 0.5f);
+    options.scale = boxGrid({{0, 40, 0}, {59, 79, 39}}, 1.25f, 1);
+    options.guide = boxGrid({{20, 0, 0}, {59, 79, 39}}, 1);
+    options.exemplarGuides = {boxGrid({{0, 0, 0}, {19, 39, 39}}, 1), boxGrid({{0, 0, 0}, {39, 19, 39}}, 1)};
+    const auto run = [&](int threads, std::atomic<bool>* cancel) {
+        RunContext ctx;
+        ctx.threads = threads;
+        ctx.cancel = cancel;
+        return levelSetHash(*synthesize({&balls, &grid}, options, ctx).model.grid);
+    };
+    CHECK(run(1, nullptr) == run(2, nullptr));
+    std::atomic<bool> cancel{true};
+    CHECK(test::thrownBy([&] { run(2, &cancel); }).code == int(ErrorCode::Cancelled));
+}
+
 TEST_CASE("synthesize: too small, too large, terabytes, cancelled", "[pipeline][error][cancel]") {
     const LevelSet exemplar = made("grid");
     CHECK(test::contains(test::thrownBy([&] { synthesize(exemplar, sized(0.5, 1, 1)); }).message,

@@ -71,6 +71,13 @@ def write_png(path, rows):
     pathlib.Path(path).write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", body) + chunk(b"IEND", b""))
 
 
+def voxels_of(domain):
+    volume = 1
+    for least, most in zip(domain["min"], domain["max"]):
+        volume *= most - least + 1
+    return volume
+
+
 def contact_sheet(pairs, path):
     """Pairs of pictures, exemplar beside result, two pairs a row."""
     blank, rows = [bytearray(b"\xff" * 3 * PICTURE[0])] * PICTURE[1], []
@@ -142,7 +149,7 @@ class Quality:
             "verdicts_passed": mean([v["passes"] for v in verdicts]),
             "seam_ratio": mean([n.get("seam_ratio", 0) for n in novelty]),
             "verbatim_share": mean([n.get("verbatim_share", 0) for n in novelty]),
-            "largest_run": max(n.get("largest_run_voxels", 0) for n in novelty),
+            "largest_run_share": max(n.get("largest_run_voxels", 0) for n in novelty) / voxels_of(found["reference"]["domain"]),
             "gradient_error": mean([o["gradient_error_mean"] for o in others]),
             "crumbs": sum(o["crumbs"] for o in others),
         }
@@ -150,7 +157,7 @@ class Quality:
         text = lambda v, form: format(v, form) if v is not None else "-"
         print(f"{name:10} {seconds:6.1f} s  yardstick {text(fields['yardstick_mean'], '6.2f')} mean {text(fields['yardstick_worst'], '7.2f')} worst "
               f"({fields['within_1']:2} of {fields['of']:2} within 1)  verdict {100 * fields['verdicts_passed']:4.0f} %  seam {fields['seam_ratio']:5.2f}  "
-              f"grad {fields['gradient_error']:.3f}  crumbs {fields['crumbs']:3}  verbatim {100 * fields['verbatim_share']:3.0f} %  {worst}", flush=True)
+              f"grad {fields['gradient_error']:.3f}  crumbs {fields['crumbs']:3}  largest run {100 * fields['largest_run_share']:3.0f} %  {worst}", flush=True)
 
     def finish(self):
         (self.folder / "quality.json").write_text(json.dumps({"synth": self.arguments.synth, "size": self.arguments.size, "seeds": self.arguments.seeds,

@@ -54,8 +54,8 @@ void summarizeRuns(DisjointSets& runs, std::size_t count, std::size_t looked, No
     novelty.meanRun = number > 0 ? inRuns / number : 0;
 }
 
-double shareUsed(const std::vector<SourcedVoxel>& voxels, const BrickField& exemplar, const IndexBox& box,
-                 const RunContext& ctx) {
+void measureUse(const std::vector<SourcedVoxel>& voxels, const BrickField& exemplar, const IndexBox& box,
+                Novelty& novelty, const RunContext& ctx) {
     std::vector<Index3> sources;
     for (const SourcedVoxel& v : voxels)
         if (box.contains(v.source) && std::abs(exemplar.inside(v.source)) < kNearSurface)
@@ -63,7 +63,9 @@ double shareUsed(const std::vector<SourcedVoxel>& voxels, const BrickField& exem
     std::sort(sources.begin(), sources.end());
     const auto different = std::unique(sources.begin(), sources.end()) - sources.begin();
     const std::size_t all = countNearSurface(exemplar, box, kNearSurface, ctx);
-    return all > 0 ? double(different) / double(all) : 0;
+    if (all == 0) return;
+    novelty.exemplarUsed = double(different) / double(all);
+    novelty.largestShare = novelty.largestRun / double(all);
 }
 
 int chebyshev(const Index3& a, const Index3& b) {
@@ -161,7 +163,7 @@ Novelty measureNovelty(std::vector<SourcedVoxel> voxels, std::size_t looked, con
         }
     }
     summarizeRuns(runs, voxels.size(), looked, novelty);
-    novelty.exemplarUsed = shareUsed(voxels, exemplar, exemplarBox, ctx);
+    measureUse(voxels, exemplar, exemplarBox, novelty, ctx);
     if (inner.count > 0 && seams.count > 0 && inner.sum > 0) novelty.seamRatio = seams.mean() / inner.mean();
     if (inner.count + seams.count > 0)
         novelty.seamShare = double(seams.count) / double(inner.count + seams.count);

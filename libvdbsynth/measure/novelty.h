@@ -23,6 +23,7 @@ struct Novelty {
     double verbatimShare = 0;  ///< of the voxels looked at, that have a neighbour in their run
     double meanRun = 0;        ///< [voxels] mean size of runs of two voxels and more
     double largestRun = 0;     ///< [voxels]
+    double largestShare = 0;   ///< largestRun over the exemplar's own voxels near its surface
     double exemplarUsed = 0;   ///< share of the exemplar's own voxels near its surface that are a source
     double seamRatio = 0;      ///< mean change of the gradient between neighbours of different runs over that
                                ///< within runs: 1 is a seam nobody sees. 0 where there is no seam.

@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/base/random.h"
+#include "libvdbsynth/synth/long_runs.h"
 
 #include <algorithm>
 #include <array>
@@ -15,6 +16,8 @@ constexpr std::uint32_t kDrawPurpose = 0x70730000;
 constexpr float kCostFloor = 0.02f;         // [voxels^2] added to costs before they are compared
 constexpr float kOverusePenalty = 2;        // share added for every time more than expected
 constexpr float kCompanionDiscount = 0.1f;  // share off for each neighbour that the source goes on from
+constexpr double kLongestRun = 0.15;       // share of an exemplar's surface that is copied in one piece
+constexpr float kTooMany = 64;              // times a source's cost that makes a longer piece
 constexpr float kAgreement = 0.01f;         // [voxels^2] cost of patches that agree
 constexpr std::size_t kPatchesAChunk = 64;
 constexpr std::int64_t kMostDense = 1 << 24;  // [voxels] of a field that are dense at once
@@ -83,9 +86,16 @@ struct Source {
 class PatchSearch {
 public:
     /// @param slab  planes of the field that patches are read from, and the first one's number
-    PatchSearch(const PatchLevel& level, const PatchMap& map, const Uses& uses, const DenseField& slab,
-                int firstPlane)
-        : mLevel(level), mMap(map), mUses(uses), mSlab(slab), mFirst(firstPlane), mLattice(map.lattice()) {}
+    /// @param tooMany  patchesTooMany
+    PatchSearch(const PatchLevel& level, const PatchMap& map, const Uses& uses,
+                const std::vector<std::uint8_t>& tooMany, const DenseField& slab, int firstPlane)
+        : mLevel(level),
+          mMap(map),
+          mUses(uses),
+          mTooMany(tooMany),
+          mSlab(slab),
+          mFirst(firstPlane),
+          mLattice(map.lattice()) {}
 
     std::uint64_t compared() const { return mCompared; }
 
@@ -112,8 +122,11 @@ private:
         if (!mLevel.allows(mNumber, exemplar) || !sourcesFor(mLevel, mMap, e, mOrigin).contains(place) ||
             !mLevel.eligible(e, place))
             return;
+        const bool tooMany =
+            mTooMany[mNumber] && exemplar == mMap.exemplar[mNumber] && place == mMap.source[mNumber];
         const float factor =
-            mUses.penalty(e, place) * (1 - kCompanionDiscount * float(companions(exemplar, place)));
+            mUses.penalty(e, place) *
+            (tooMany ? kTooMany : 1 - kCompanionDiscount * float(companions(exemplar, place)));
         const float guided = mLevel.guidance.empty() ? 0.f : mLevel.guidance.cost(mOrigin, e, place);
         const float giveUp = mBest.dearness / factor - kCostFloor - guided;
         if (giveUp < 0) return;
@@ -192,6 +205,7 @@ private:
     const PatchLevel& mLevel;
     const PatchMap& mMap;
     const Uses& mUses;
+    const std::vector<std::uint8_t>& mTooMany;
     const DenseField& mSlab;
     int mFirst;
     Index3 mLattice;
@@ -259,51 +273,99 @@ __attribute__((target_clones("avx2", "default"))) float patchDifference(const Pa
     return total / samples;
 }
 
-RoundCounts improveSources(const PatchLevel& level, const BrickField& field, int round, PatchMap& map,
-                           const RunContext& ctx) {
-    const std::size_t count = map.source.size();
-    std::vector<std::uint8_t> counted = variedPatches(map, field, ctx);
-    for (std::size_t i = 0; i < count; ++i) counted[i] = counted[i] && !level.keeps(i);
-    const Uses uses(level, map, counted);
-    std::vector<Source> found(count);
-    RoundCounts counts;
+namespace {
+
+// Planes of a field from `first` on as one array.
+DenseField densePlanes(const BrickField& field, int first, int count, const RunContext& ctx) {
+    const Index3 size = field.box().size();
+    DenseField slab;
+    slab.size = {count, size.y, size.z};
+    const std::size_t planeSamples = std::size_t(size.y) * std::size_t(size.z);
+    slab.samples.resize(std::size_t(count) * planeSamples);
+    parallelFor(ctx, std::size_t(count), 4, [&](std::size_t begin, std::size_t end) {
+        field.readBox({first + int(begin), 0, 0}, {int(end - begin), size.y, size.z},
+                      slab.samples.data() + begin * planeSamples);
+    });
+    return slab;
+}
+
+// The sources of those patches that search, each by what all had before the round.
+std::vector<Source> foundSources(const PatchLevel& level, const BrickField& field, int round,
+                                 const std::vector<std::uint8_t>& searches,
+                                 const std::vector<std::uint8_t>& tooMany, const Uses& uses,
+                                 const PatchMap& map, RoundCounts& counts, const RunContext& ctx) {
+    std::vector<Source> found(map.source.size());
     const Index3 lattice = map.lattice(), size = field.box().size();
     const std::size_t layer = std::size_t(lattice.y) * std::size_t(lattice.z);
     const std::int64_t planes = kMostDense / (std::int64_t(size.y) * size.z);
     const int layers = int(std::max<std::int64_t>(1, (planes - map.block) / map.stride));
     for (int first = 0; first < lattice.x; first += layers) {
         const int last = std::min(first + layers, lattice.x) - 1, plane = map.origin(0, first);
-        DenseField slab;
-        slab.size = {map.origin(0, last) + map.block - plane, size.y, size.z};
-        slab.samples.resize(std::size_t(slab.size.x) * std::size_t(size.y) * std::size_t(size.z));
-        const std::size_t planeSamples = std::size_t(size.y) * std::size_t(size.z);
-        parallelFor(ctx, std::size_t(slab.size.x), 4, [&](std::size_t begin, std::size_t end) {
-            field.readBox({plane + int(begin), 0, 0}, {int(end - begin), size.y, size.z},
-                          slab.samples.data() + begin * planeSamples);
-        });
+        const DenseField slab = densePlanes(field, plane, map.origin(0, last) + map.block - plane, ctx);
         const std::size_t begun = std::size_t(first) * layer, all = std::size_t(last - first + 1) * layer;
         std::vector<std::uint64_t> compared((all + kPatchesAChunk - 1) / kPatchesAChunk, 0);
         parallelFor(ctx, all, kPatchesAChunk, [&](std::size_t begin, std::size_t end) {
-            PatchSearch search(level, map, uses, slab, plane);
+            PatchSearch search(level, map, uses, tooMany, slab, plane);
             for (std::size_t i = begun + begin; i < begun + end; ++i)
-                if (level.keeps(i) || settled(level, map, field, i))
-                    found[i] = {map.source[i], map.exemplar[i], 0, 0};
-                else
-                    found[i] = search.search(i, round, ctx.seed);
+                if (searches[i]) found[i] = search.search(i, round, ctx.seed);
             compared[begin / kPatchesAChunk] = search.compared();
         });
         for (std::uint64_t n : compared) counts.compared += n;
     }
-    map.weight.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
+    return found;
+}
+
+void takeFound(const std::vector<std::uint8_t>& searches, const std::vector<Source>& found, PatchMap& map) {
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        if (!searches[i]) continue;
         map.source[i] = found[i].place;
         map.exemplar[i] = found[i].exemplar;
         map.weight[i] = weightFor(found[i].cost);
-        counts.cost += double(found[i].cost) / double(count);
     }
+}
+
+// 1 for patches with a surface that look for their source themselves.
+std::vector<std::uint8_t> patchesThatCount(const PatchLevel& level, const PatchMap& map,
+                                           const BrickField& field, const RunContext& ctx) {
+    std::vector<std::uint8_t> counted = variedPatches(map, field, ctx);
+    for (std::size_t i = 0; i < counted.size(); ++i) counted[i] = counted[i] && !level.keeps(i);
+    return counted;
+}
+
+}  // namespace
+
+RoundCounts improveSources(const PatchLevel& level, const BrickField& field, int round, PatchMap& map,
+                           const RunContext& ctx) {
+    const std::vector<std::uint8_t> counted = patchesThatCount(level, map, field, ctx);
+    const std::vector<std::uint8_t> tooMany = patchesTooMany(level, map, counted, kLongestRun);
+    const Uses uses(level, map, counted);
+    std::vector<std::uint8_t> searches(counted.size());
+    parallelFor(ctx, searches.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            searches[i] = !level.keeps(i) && !settled(level, map, field, i);
+    });
+    RoundCounts counts;
+    const std::vector<Source> found =
+        foundSources(level, field, round, searches, tooMany, uses, map, counts, ctx);
+    map.weight.assign(searches.size(), weightFor(0));
+    takeFound(searches, found, map);
     copyRepeats(level, map);
-    counts.patches = count;
+    for (const Source& source : found) counts.cost += double(source.cost) / double(found.size());
+    counts.patches = found.size();
     return counts;
+}
+
+std::size_t shortenRuns(const PatchLevel& level, const BrickField& field, int round, PatchMap& map,
+                        const RunContext& ctx) {
+    const std::vector<std::uint8_t> counted = patchesThatCount(level, map, field, ctx);
+    const std::vector<std::uint8_t> tooMany = patchesTooMany(level, map, counted, kLongestRun);
+    const auto many = std::size_t(std::count(tooMany.begin(), tooMany.end(), 1));
+    if (many == 0) return 0;
+    RoundCounts counts;
+    const Uses uses(level, map, counted);
+    takeFound(tooMany, foundSources(level, field, round, tooMany, tooMany, uses, map, counts, ctx), map);
+    copyRepeats(level, map);
+    return many;
 }
 
 }  // namespace vdbsynth

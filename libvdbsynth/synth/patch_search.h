@@ -26,4 +26,9 @@ struct RoundCounts {
 RoundCounts improveSources(const PatchLevel& level, const BrickField& field, int round, PatchMap& map,
                            const RunContext& ctx);
 
+/// Gives the patches that make a run too long (patchesTooMany) the next best source, and leaves all others.
+/// @return how many; 0: no run is too long
+std::size_t shortenRuns(const PatchLevel& level, const BrickField& field, int round, PatchMap& map,
+                        const RunContext& ctx);
+
 }  // namespace vdbsynth

@@ -17,6 +17,7 @@ using Pass = SynthesisPass;
 
 constexpr int kRoundsFirst = 12, kRoundsBetween = 6, kRoundsLast = 4;
 constexpr int kOverlap = 4;        // patches over a sample along each axis
+constexpr int kRoundsOfCuts = 3;   // after the last, of runs that grew too long
 constexpr int kCoarsestSide = 32;  // [samples] an exemplar of less is not halved
 
 // As many passes as leave the coarsest exemplar a side to choose from.
@@ -230,6 +231,8 @@ private:
             mStats.meanCost = counts.cost;
             stage.advance();
         }
+        for (int round = rounds; p == 0 && round < rounds + kRoundsOfCuts; ++round)
+            if (shortenRuns(level, mField, int(p) * 64 + round, map, mContext) == 0) break;
         if (!mGiven.open.empty())
             mField = withKnown(mGiven, p, voteThroughMap(map, pass.exemplars, mContext, &level.exemplars),
                                mContext);

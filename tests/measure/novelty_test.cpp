@@ -26,6 +26,7 @@ TEST_CASE("measureNovelty: runs, seams and use, counted by hand", "[measure][ora
     CHECK(n.meanRun == Approx(2.5));
     CHECK(n.largestRun == 3);
     CHECK(n.exemplarUsed == Approx(5.0 / (90 * 10 * 3)));
+    CHECK(n.largestShare == Approx(3.0 / (90 * 10 * 3)));
     CHECK(n.seamShare == Approx(2.0 / 5));
     // Gradients at 0..5: (0.5 at the clamped face) 0.5 1 1 2 3 2; seams 2-3, 4-5: 1, 1; inside 0.5, 0, 1.
     CHECK(n.seamRatio == Approx(1.0 / 0.5));

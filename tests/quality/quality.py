@@ -71,13 +71,6 @@ def write_png(path, rows):
     pathlib.Path(path).write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", body) + chunk(b"IEND", b""))
 
 
-def voxels_of(domain):
-    volume = 1
-    for least, most in zip(domain["min"], domain["max"]):
-        volume *= most - least + 1
-    return volume
-
-
 def contact_sheet(pairs, path):
     """Pairs of pictures, exemplar beside result, two pairs a row."""
     blank, rows = [bytearray(b"\xff" * 3 * PICTURE[0])] * PICTURE[1], []
@@ -149,7 +142,7 @@ class Quality:
             "verdicts_passed": mean([v["passes"] for v in verdicts]),
             "seam_ratio": mean([n.get("seam_ratio", 0) for n in novelty]),
             "verbatim_share": mean([n.get("verbatim_share", 0) for n in novelty]),
-            "largest_run_share": max(n.get("largest_run_voxels", 0) for n in novelty) / voxels_of(found["reference"]["domain"]),
+            "largest_run_share": max(n.get("largest_run_share", 0) for n in novelty),
             "gradient_error": mean([o["gradient_error_mean"] for o in others]),
             "crumbs": sum(o["crumbs"] for o in others),
         }

@@ -34,10 +34,10 @@ TEST_CASE("improveSources: finds the shift of a copy from sources that are all w
     const auto exemplar = std::make_shared<const BrickField>(test::ballsField({48, 48, 48}, 2, 5.f, 25));
     const Index3 shift{9, 4, 7};
     const BrickField target =
-        test::fieldFrom({32, 32, 32}, [&](const Index3& p) { return exemplar->at(p + shift); });
+        test::fieldFrom({24, 24, 24}, [&](const Index3& p) { return exemplar->at(p + shift); });
     BlockSynthesisOptions options;
-    options.size = {32, 32, 32};
-    const SynthesisPass pass{{exemplar}, {32, 32, 32}, 8, 1};
+    options.size = {24, 24, 24};
+    const SynthesisPass pass{{exemplar}, {24, 24, 24}, 8, 1};
     PatchMap map;
     map.target = pass.target;
     map.block = 8;

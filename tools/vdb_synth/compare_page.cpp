@@ -232,7 +232,8 @@ std::string distancesTable(const ModelDistances& d) {
     html += ".</p>\n<p>Novelty " + escaped(sourceText(d));
     if (d.sourceKind != SourceKind::None)
         html += ": " + shortNumber(100 * d.novelty.verbatimShare) + " % in verbatim runs, the largest " +
-                shortNumber(d.novelty.largestRun) + " voxels; " + shortNumber(100 * d.novelty.exemplarUsed) +
+                shortNumber(d.novelty.largestRun) + " voxels, " + shortNumber(100 * d.novelty.largestShare) +
+                " % of the reference's; " + shortNumber(100 * d.novelty.exemplarUsed) +
                 " % of the reference used; seam ratio " + shortNumber(d.novelty.seamRatio);
     return html + ".</p>\n";
 }

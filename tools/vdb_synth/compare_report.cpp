@@ -112,7 +112,8 @@ void appendDistances(const Comparison& comparison, std::size_t i, std::string& t
     const Novelty& n = d.novelty;
     text += column("voxels in verbatim runs", kName) + shortNumber(n.verbatimShare) + "\n" +
             column("mean, largest run (voxels)", kName) + shortNumber(n.meanRun) + "  " +
-            shortNumber(n.largestRun) + "\n" + column("share of the reference used", kName) +
+            shortNumber(n.largestRun) + "\n" + column("largest run over reference", kName) +
+            shortNumber(n.largestShare) + "\n" + column("share of the reference used", kName) +
             shortNumber(n.exemplarUsed) + "\n" + column("seam ratio, share of seams", kName) +
             shortNumber(n.seamRatio) + "  " + shortNumber(n.seamShare) + "\n";
 }
@@ -194,6 +195,7 @@ Json noveltyJson(const ModelDistances& d) {
     json["verbatim_share"] = d.novelty.verbatimShare;
     json["mean_run_voxels"] = d.novelty.meanRun;
     json["largest_run_voxels"] = d.novelty.largestRun;
+    json["largest_run_share"] = d.novelty.largestShare;
     json["reference_used"] = d.novelty.exemplarUsed;
     json["seam_ratio"] = d.novelty.seamRatio;
     json["seam_share"] = d.novelty.seamShare;

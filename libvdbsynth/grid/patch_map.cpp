@@ -146,6 +146,13 @@ float voteWeight(int block, int i) {
     return tent * tent;
 }
 
+float blockWeight(const PatchMap& map, const Index3& block, const Index3& voxel) {
+    float say = map.weight.empty() ? 1.f : map.weight[map.index(block)];
+    const Index3 offset = voxel - map.originOf(block);
+    for (int axis = 0; axis < 3; ++axis) say *= voteWeight(map.block, offset[axis]);
+    return say;
+}
+
 Index3 strongestBlock(const PatchMap& map, const Index3& voxel) {
     int first[3], last[3];
     for (int axis = 0; axis < 3; ++axis) map.covering(axis, voxel[axis], first[axis], last[axis]);
@@ -155,9 +162,7 @@ Index3 strongestBlock(const PatchMap& map, const Index3& voxel) {
     for (int a = first[0]; a <= last[0]; ++a)
         for (int b = first[1]; b <= last[1]; ++b)
             for (int c = first[2]; c <= last[2]; ++c) {
-                float say = map.weight.empty() ? 1.f : map.weight[map.index({a, b, c})];
-                const Index3 offset = voxel - map.originOf({a, b, c});
-                for (int axis = 0; axis < 3; ++axis) say *= voteWeight(map.block, offset[axis]);
+                const float say = blockWeight(map, {a, b, c}, voxel);
                 if (say > most) {
                     most = say;
                     best = {a, b, c};

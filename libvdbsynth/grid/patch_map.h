@@ -57,6 +57,9 @@ struct PatchMap {
 float voteWeight(int block, int i);
 inline constexpr const char* kVoteKernel = "tent^2";
 
+/// How much say a block has at a target voxel that it covers.
+float blockWeight(const PatchMap& map, const Index3& block, const Index3& voxel);
+
 /// The block that has the most say at a target voxel, the lower on a tie.
 Index3 strongestBlock(const PatchMap& map, const Index3& voxel);
 

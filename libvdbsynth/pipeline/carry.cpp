@@ -1,11 +1,13 @@
 #include "libvdbsynth/pipeline/carry.h"
 
+#include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/vdb/coord.h"
 
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <type_traits>
 
 namespace vdbsynth {
@@ -14,6 +16,9 @@ namespace {
 using Carriable =
     openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid, openvdb::Int64Grid,
                       openvdb::BoolGrid, openvdb::Vec3IGrid, openvdb::Vec3SGrid, openvdb::Vec3DGrid>;
+
+using Blendable =
+    openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Vec3SGrid, openvdb::Vec3DGrid>;
 
 struct Link {
     openvdb::Coord to;
@@ -61,11 +66,20 @@ std::vector<openvdb::Coord> nearSteps() {
     return steps;
 }
 
+// The value of the active voxel nearest to a place, within two of it.
+template <typename Accessor, typename Value>
+bool readNear(const Accessor& from, const openvdb::math::Transform& transform, const openvdb::Vec3d& world,
+              Value& value) {
+    static const std::vector<openvdb::Coord> steps = nearSteps();
+    const openvdb::Coord middle = openvdb::Coord::round(transform.worldToIndex(world));
+    return std::any_of(steps.begin(), steps.end(),
+                       [&](const openvdb::Coord& step) { return from.probeValue(middle + step, value); });
+}
+
 // @param into  a grid of the same name and kind to write into, or null
 template <typename Grid>
 GridPtr readThrough(const Grid& grid, const std::vector<Link>& links, const openvdb::FloatGrid& result,
                     const GridPtr& into) {
-    static const std::vector<openvdb::Coord> steps = nearSteps();
     auto made = openvdb::gridPtrCast<Grid>(into);
     if (!made) {
         made = Grid::create(grid.background());
@@ -84,14 +98,65 @@ GridPtr readThrough(const Grid& grid, const std::vector<Link>& links, const open
             variant = link.variant;
             turn = variant ? turnBy(variant->rotation) : kIdentity;
         }
-        const openvdb::Coord middle = openvdb::Coord::round(grid.transform().worldToIndex(link.from));
-        for (const openvdb::Coord& step : steps)
-            if (from.probeValue(middle + step, value)) {
-                to.setValueOn(link.to, turns && variant ? turned(value, turn) : value);
-                break;
-            }
+        if (readNear(from, grid.transform(), link.from, value))
+            to.setValueOn(link.to, turns && variant ? turned(value, turn) : value);
     }
     return made;
+}
+
+// Of each exemplar the grid of the same name and kind; null: it has none.
+template <typename Grid>
+std::vector<typename Grid::ConstPtr> sameGrids(const std::vector<const LevelSet*>& exemplars,
+                                               const Grid& like) {
+    std::vector<typename Grid::ConstPtr> grids(exemplars.size());
+    for (std::size_t e = 0; e < exemplars.size(); ++e)
+        for (const GridPtr& grid : exemplars[e]->carried)
+            if (!grids[e] && grid->getName() == like.getName()) grids[e] = openvdb::gridPtrCast<Grid>(grid);
+    return grids;
+}
+
+// The mean of what all sources of a voxel have; nothing where none has a value.
+template <typename Grid>
+std::optional<typename Grid::ValueType> blended(const std::vector<VotingSource>& sources,
+                                                const std::vector<typename Grid::ConstPtr>& grids,
+                                                const std::vector<const LevelSet*>& exemplars) {
+    using Value = typename Grid::ValueType;
+    using Element = typename openvdb::VecTraits<Value>::ElementType;
+    // Differences from one value are summed, so that the mean of equal values is that value.
+    Value base = openvdb::zeroVal<Value>(), sum = base, value;
+    double total = 0;
+    for (const VotingSource& source : sources) {
+        const typename Grid::ConstPtr& grid = grids[source.from.exemplar];
+        if (!grid) continue;
+        const Index3& from = source.from.voxel;
+        const openvdb::Vec3d world = exemplars[source.from.exemplar]->grid->transform().indexToWorld(
+            openvdb::Vec3d(from.x, from.y, from.z));
+        if (!readNear(grid->getConstUnsafeAccessor(), grid->transform(), world, value)) continue;
+        if (source.from.variant && grid->getVectorType() != openvdb::VEC_INVARIANT)
+            value = turned(value, turnBy(source.from.variant->rotation));
+        if (total == 0) base = value;
+        sum += (value - base) * Element(source.weight);
+        total += double(source.weight);
+    }
+    if (total == 0) return std::nullopt;
+    return Value(base + sum * Element(1 / total));
+}
+
+// Puts the mean of all sources in place of each value that was copied.
+template <typename Grid>
+void blendThrough(const SourceMap& map, const std::vector<const LevelSet*>& exemplars, Grid& carried,
+                  const RunContext& ctx) {
+    const std::vector<typename Grid::ConstPtr> grids = sameGrids(exemplars, carried);
+    std::vector<typename Grid::TreeType::LeafNodeType*> leaves;
+    carried.tree().voxelizeActiveTiles();
+    carried.tree().getNodes(leaves);
+    parallelFor(ctx, leaves.size(), 16, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            for (auto it = leaves[i]->beginValueOn(); it; ++it)
+                if (const auto mean =
+                        blended<Grid>(votingSources(map, fromCoord(it.getCoord())), grids, exemplars))
+                    it.setValue(*mean);
+    });
 }
 
 }  // namespace
@@ -116,11 +181,20 @@ bool isOfSourceMap(const std::string& name) {
 }
 
 std::vector<GridPtr> carryThroughMap(const SourceMap& map, const std::vector<const LevelSet*>& exemplars,
-                                     const openvdb::FloatGrid& result, const RunContext& ctx) {
+                                     const openvdb::FloatGrid& result, CarriedValues values,
+                                     const RunContext& ctx) {
     bool any = false;
     for (const LevelSet* exemplar : exemplars) any = any || !exemplar->carried.empty();
     if (!any) return {};
-    return carryToVoxels(strongestSources(map, result, ctx), exemplars, result, {}, ctx);
+    std::vector<GridPtr> carried =
+        carryToVoxels(strongestSources(map, result, ctx), exemplars, result, {}, ctx);
+    if (values == CarriedValues::Copied) return carried;
+    Stage stage(ctx, "blending attributes", carried.size());
+    for (const GridPtr& grid : carried) {
+        grid->apply<Blendable>([&](auto& typed) { blendThrough(map, exemplars, typed, ctx); });
+        stage.advance();
+    }
+    return carried;
 }
 
 std::vector<GridPtr> carryToVoxels(const std::vector<MappedVoxel>& voxels,

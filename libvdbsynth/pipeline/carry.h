@@ -8,12 +8,15 @@ namespace vdbsynth {
 /// one. A voxel has the value of the exemplar's voxel that had the most say there, or of the nearest active
 /// one within two voxels of it, else none; vectors that have a direction turn with what is turned. Grids of a
 /// source map itself do not come along; grids whose kind or transform cannot be read so are left out with a
-/// warning.
+/// warning. With CarriedValues::Blended the values of floats and vectors are then means over all sources that
+/// had a say and a value there.
 /// @param map     whose exemplars they are, at their resolution
 /// @param result  what was made through it
-/// @par Cost    O(active voxels of the result)   @par Repeats yes
+/// @par Cost    O(active voxels of the result), blended times the overlap of blocks
+/// @par Repeats same bits for any number of threads
 std::vector<GridPtr> carryThroughMap(const SourceMap& map, const std::vector<const LevelSet*>& exemplars,
-                                     const openvdb::FloatGrid& result, const RunContext& ctx = {});
+                                     const openvdb::FloatGrid& result, CarriedValues values,
+                                     const RunContext& ctx = {});
 
 /// carryThroughMap for some voxels only. Grids of `into` that are of a carried grid's name and kind are
 /// written into.

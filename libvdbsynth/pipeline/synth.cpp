@@ -183,7 +183,7 @@ SynthResult synthesize(const LevelSets& exemplars, const SynthOptions& options, 
         synthesis.field = voteThroughMap(plan.map.patches, held.exemplars, ctx);
     }
     result.model = finishSynthesis(plan.map, std::move(synthesis.field), held.exemplars, like, ctx);
-    result.model.carried = carryThroughMap(plan.map, exemplars, *result.model.grid, ctx);
+    result.model.carried = carryThroughMap(plan.map, exemplars, *result.model.grid, options.carried, ctx);
     result.map = std::move(plan.map);
     result.stats = synthesis.stats;
     result.stats.block = result.map.patches.block;
@@ -194,8 +194,11 @@ SynthResult synthesize(const LevelSet& exemplar, const SynthOptions& options, co
     return synthesize(LevelSets{&exemplar}, options, ctx);
 }
 
-SourceVoxel strongestSource(const SourceMap& map, const Index3& voxel) {
-    const Index3 local = voxel - map.targetBox.min, block = strongestBlock(map.patches, local);
+namespace {
+
+// What a block of the lattice has at a voxel of the target.
+SourceVoxel sourceOf(const SourceMap& map, const Index3& block, const Index3& voxel) {
+    const Index3 local = voxel - map.targetBox.min;
     const std::size_t at = map.patches.index(block), number = std::size_t(map.patches.exemplar[at]);
     const Index3 from = map.patches.source[at] + local - map.patches.originOf(block);
     SourceVoxel source;
@@ -209,6 +212,28 @@ SourceVoxel strongestSource(const SourceMap& map, const Index3& voxel) {
     const Vec3d p = inExemplar(*source.variant, box.size(), {double(from.x), double(from.y), double(from.z)});
     for (int axis = 0; axis < 3; ++axis) source.voxel[axis] = box.min[axis] + int(std::lround(p[axis]));
     return source;
+}
+
+}  // namespace
+
+SourceVoxel strongestSource(const SourceMap& map, const Index3& voxel) {
+    return sourceOf(map, strongestBlock(map.patches, voxel - map.targetBox.min), voxel);
+}
+
+std::vector<VotingSource> votingSources(const SourceMap& map, const Index3& voxel) {
+    const Index3 local = voxel - map.targetBox.min, strongest = strongestBlock(map.patches, local);
+    if (map.patches.vote == PatchVote::First) return {{sourceOf(map, strongest, voxel), 1.f}};
+    const float least = blockWeight(map.patches, strongest, local) / 100;
+    int first[3], last[3];
+    for (int axis = 0; axis < 3; ++axis) map.patches.covering(axis, local[axis], first[axis], last[axis]);
+    std::vector<VotingSource> sources;
+    for (int a = first[0]; a <= last[0]; ++a)
+        for (int b = first[1]; b <= last[1]; ++b)
+            for (int c = first[2]; c <= last[2]; ++c) {
+                const float weight = blockWeight(map.patches, {a, b, c}, local);
+                if (weight >= least) sources.push_back({sourceOf(map, {a, b, c}, voxel), weight});
+            }
+    return sources;
 }
 
 std::vector<MappedVoxel> strongestSources(const SourceMap& map, const openvdb::FloatGrid& result,
@@ -262,7 +287,8 @@ int factorOf(const SourceMap& map, const LevelSet& exemplar) {
 
 }  // namespace
 
-LevelSet repeatSynthesis(const SourceMap& map, const LevelSets& exemplars, const RunContext& ctx) {
+LevelSet repeatSynthesis(const SourceMap& map, const LevelSets& exemplars, const RunContext& ctx,
+                         CarriedValues carried) {
     const ThreadLimit limit(ctx);
     if (exemplars.size() != map.exemplars.size())
         throw Error(ErrorCode::ShapeMismatch, "the source map was made with " +
@@ -288,7 +314,7 @@ LevelSet repeatSynthesis(const SourceMap& map, const LevelSets& exemplars, const
     const openvdb::FloatGrid& like = *exemplars.front()->grid;
     LevelSet model = finishSynthesis(
         scaled, voteThroughMap(scaled.patches, variantsOf(scaled, fields, ctx), ctx), fields, like, ctx);
-    model.carried = carryThroughMap(scaled, exemplars, *model.grid, ctx);
+    model.carried = carryThroughMap(scaled, exemplars, *model.grid, carried, ctx);
     return model;
 }
 

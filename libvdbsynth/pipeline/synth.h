@@ -11,6 +11,12 @@
 
 namespace vdbsynth {
 
+/// What grids that come along hold in a result.
+enum class CarriedValues {
+    Copied,  ///< the value of the voxel that had the most say
+    Blended  ///< of floats and vectors the mean of all that had a say, as much as they had
+};
+
 struct SynthOptions {
     /// Per axis the target's size: in voxels, or as a multiple of the domain where `multiple` is set.
     std::array<double, 3> size{2, 2, 2};
@@ -32,6 +38,7 @@ struct SynthOptions {
     std::vector<GridPtr> exemplarGuides;  ///< the same scalar over each exemplar
     double guideWeight = 4;               ///< 0.001 to 1000, see BlockSynthesisOptions
     float halfWidth = kHalfWidth;         ///< [voxels] of the result
+    CarriedValues carried = CarriedValues::Copied;
 };
 
 /// One of the exemplars that a source map reads.
@@ -64,6 +71,16 @@ struct SourceVoxel {
 
 /// What has the most say at a voxel of the target's domain; with a variant the nearest voxel.
 SourceVoxel strongestSource(const SourceMap& map, const Index3& voxel);
+
+/// What has a say at a voxel of the target's domain, and how much.
+struct VotingSource {
+    SourceVoxel from;
+    float weight = 1;
+};
+
+/// All that have at least a hundredth of the strongest one's say; of a map whose first block says it, that
+/// one.
+std::vector<VotingSource> votingSources(const SourceMap& map, const Index3& voxel);
 
 /// A voxel of a result and what has the most say there.
 struct MappedVoxel {
@@ -102,7 +119,7 @@ SynthResult synthesize(const LevelSet& exemplar, const SynthOptions& options = {
 /// @throw Error ShapeMismatch (number, voxel size or domain do not fit the map), EmptyInput, Memory,
 /// Cancelled
 LevelSet repeatSynthesis(const SourceMap& map, const std::vector<const LevelSet*>& exemplars,
-                         const RunContext& ctx = {});
+                         const RunContext& ctx = {}, CarriedValues carried = CarriedValues::Copied);
 LevelSet repeatSynthesis(const SourceMap& map, const LevelSet& exemplar, const RunContext& ctx = {});
 
 /// The map as grids: `vote_source` Vec3I, `vote_weight` float and, of several exemplars or variants,

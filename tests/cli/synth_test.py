@@ -68,6 +68,10 @@ class Synth(CliTest):
         self.assertEqual(self.read("again.ply"), self.read("m.ply"))
         self.ok("synth", "c.obj", "-o", "n.ply", "--voxel-size", 1, "--exemplar-box", "0,0,0,31,31,31", "--size", "2x,1x,1x", "--carry", "Cd")
         self.assertEqual(self.read("n.ply"), self.read("m.ply"))
+        # One colour throughout: its mean is the same.
+        self.ok("repeat", "m.vdb", "c.obj", "-o", "again.ply", "--voxel-size", 1, "--carry", "Cd", "--carry-blend")
+        self.assertEqual(self.read("again.ply"), self.read("m.ply"))
+        self.fails(2, "--carry colour", "repeat", "m.vdb", "c.obj", "-o", "n.ply", "--voxel-size", 1, "--carry", "colour")
         self.fails(2, "--carry colour", "synth", "c.obj", "-o", "n.ply", "--voxel-size", 1, "--exemplar-box", "0,0,0,31,31,31", "--size", "2x,1x,1x", "--carry", "colour")
 
     def test_holes_of_real_meshes(self):

@@ -219,6 +219,59 @@ TEST_CASE("synthesize: what comes with the exemplar is read through the map, and
           carried->activeVoxelCount());
 }
 
+TEST_CASE("synthesize: numbers and vectors that come along can be means of all that had a say",
+          "[pipeline][oracle]") {
+    LevelSet exemplar = made("balls", 40);
+    // What is copied lies on a ramp or is one vector everywhere; a class number cannot be a mean.
+    auto ramp = openvdb::FloatGrid::create(0.f);
+    ramp->setName("ramp");
+    auto up = openvdb::Vec3SGrid::create(openvdb::Vec3f(0));
+    up->setName("up");
+    auto number = openvdb::Int32Grid::create(0);
+    number->setName("number");
+    for (auto it = exemplar.grid->cbeginValueOn(); it; ++it) {
+        ramp->tree().setValueOn(it.getCoord(), float(it.getCoord().x()));
+        up->tree().setValueOn(it.getCoord(), openvdb::Vec3f(0, 0, 2));
+        number->tree().setValueOn(it.getCoord(), it.getCoord().x());
+    }
+    exemplar.carried = {ramp, up, number};
+    const SynthOptions copying = sized(2, 1.5, 1);
+    SynthOptions blending = copying;
+    blending.carried = CarriedValues::Blended;
+    const SynthResult copies = synthesize(exemplar, copying), blends = synthesize(exemplar, blending);
+    REQUIRE(blends.model.carried.size() == 3);
+    const auto copied = openvdb::gridPtrCast<openvdb::FloatGrid>(copies.model.carried[0]),
+               blended = openvdb::gridPtrCast<openvdb::FloatGrid>(blends.model.carried[0]);
+    CHECK(copied->activeVoxelCount() == blended->activeVoxelCount());
+    std::size_t means = 0;
+    for (auto it = blended->cbeginValueOn(); it; ++it) {
+        const openvdb::Coord c = it.getCoord();
+        means += std::abs(*it - std::round(*it)) > 1e-3f ? 1 : 0;
+        // By hand: no voxel of the ramp is off, so a mean over the voters' own places, where all are active.
+        double sum = 0, total = 0;
+        bool all = true;
+        for (const VotingSource& source : votingSources(blends.map, {c.x(), c.y(), c.z()})) {
+            const Index3 from = source.from.voxel;
+            const openvdb::Coord place(from.x, from.y, from.z);
+            all = all && ramp->tree().isValueOn(place);
+            sum += double(source.weight) * from.x;
+            total += double(source.weight);
+        }
+        if (all) REQUIRE(double(*it) == Approx(sum / total).margin(1e-3));
+    }
+    CHECK(means > 100);
+    const auto vectors = openvdb::gridPtrCast<openvdb::Vec3SGrid>(blends.model.carried[1]);
+    for (auto it = vectors->cbeginValueOn(); it; ++it)
+        REQUIRE((*it - openvdb::Vec3f(0, 0, 2)).length() < 1e-5f);
+    const auto integers = openvdb::gridPtrCast<openvdb::Int32Grid>(blends.model.carried[2]),
+               same = openvdb::gridPtrCast<openvdb::Int32Grid>(copies.model.carried[2]);
+    for (auto it = integers->cbeginValueOn(); it; ++it) REQUIRE(*it == same->tree().getValue(it.getCoord()));
+    const LevelSet again = repeatSynthesis(blends.map, {&exemplar}, {}, CarriedValues::Blended);
+    const auto repeated = openvdb::gridPtrCast<openvdb::FloatGrid>(again.carried[0]);
+    for (auto it = blended->cbeginValueOn(); it; ++it)
+        REQUIRE(repeated->tree().getValue(it.getCoord()) == *it);
+}
+
 namespace {
 
 // A grid that is `inside` in a box and `outside` elsewhere.

@@ -1,3 +1,4 @@
+#include "tools/vdb_synth/carry_options.h"
 #include "tools/vdb_synth/command.h"
 
 #include "libvdbsynth/base/error.h"
@@ -27,8 +28,9 @@ void repeat(Run& run) {
     std::vector<const LevelSet*> pointers;
     for (std::size_t i = 1; i < run.arguments.inputs.size(); ++i)
         exemplars.push_back(run.load(run.arguments.inputs[i], modelOptions));
+    keepCarried(run.arguments, exemplars);
     for (const LevelSet& exemplar : exemplars) pointers.push_back(&exemplar);
-    const LevelSet result = repeatSynthesis(map, pointers, run.context);
+    const LevelSet result = repeatSynthesis(map, pointers, run.context, carriedValues(run.arguments));
     outputs.metadata = run.metadata();
     writeModel(result, paths, outputs, run.outputs(), run.context);
     run.describe(result);
@@ -41,7 +43,9 @@ const Command kRepeat{"repeat",
                       "repeat MAP EXEMPLAR... -o OUT [options]",
                       "Apply a saved source map again",
                       "vdb_synth repeat map.vdb grid.vdb -o again.vdb",
-                      {{"adaptivity", "A", "0 to 1: merge flat parts of a mesh output, default 0"}},
+                      {carryOptions()[0],
+                       carryOptions()[1],
+                       {"adaptivity", "A", "0 to 1: merge flat parts of a mesh output, default 0"}},
                       repeat};
 
 }  // namespace vdbsynth::cli

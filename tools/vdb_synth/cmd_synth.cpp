@@ -1,8 +1,8 @@
+#include "tools/vdb_synth/carry_options.h"
 #include "tools/vdb_synth/command.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
-#include "libvdbsynth/pipeline/carry.h"
 #include "libvdbsynth/pipeline/control.h"
 #include "libvdbsynth/pipeline/fill.h"
 #include "libvdbsynth/pipeline/outputs.h"
@@ -17,15 +17,6 @@
 
 namespace vdbsynth::cli {
 namespace {
-
-std::vector<std::string> split(const std::string& text) {
-    std::vector<std::string> parts;
-    std::size_t begin = 0;
-    for (std::size_t comma; (comma = text.find(',', begin)) != std::string::npos; begin = comma + 1)
-        parts.push_back(text.substr(begin, comma - begin));
-    parts.push_back(text.substr(begin));
-    return parts;
-}
 
 std::string sizeText(const SynthOptions& options) {
     std::string text;
@@ -43,7 +34,7 @@ void parseSize(const Arguments& arguments, SynthOptions& options) {
     if (text.empty())
         throw Error(ErrorCode::InvalidOption,
                     "--size: missing; give X,Y,Z in voxels or as multiples, for example --size 2x,2x,1x");
-    const std::vector<std::string> parts = split(text);
+    const std::vector<std::string> parts = splitAtCommas(text);
     const char* range =
         "three sizes with commas, each in voxels or as a multiple, for example 2x,2x,1x or 128,128,64";
     requireOption(parts.size() == 3, "size", text, range);
@@ -66,7 +57,7 @@ void parseSize(const Arguments& arguments, SynthOptions& options) {
 void parseBorder(const Arguments& arguments, SynthOptions& options) {
     const std::string text = arguments.text("border");
     if (text.empty()) return;
-    std::vector<std::string> parts = split(text);
+    std::vector<std::string> parts = splitAtCommas(text);
     if (parts.size() == 1) parts.assign(3, parts[0]);
     const char* range = "cut, object or tile, once or for each axis with commas";
     requireOption(parts.size() == 3, "border", text, range);
@@ -96,6 +87,7 @@ SynthOptions parseOptions(const Arguments& arguments) {
     options.levels = arguments.whole("levels", 0, 1, 8);
     options.drift = arguments.whole("drift", 0, 0, 1 << 20);
     options.draft = arguments.has("draft");
+    options.carried = carriedValues(arguments);
     options.method = parseMethod(arguments);
     options.halfWidth = float(arguments.real("half-width", 3, 1.5, 100));
     return options;
@@ -145,8 +137,8 @@ void fill(Run& run) {
     const Arguments& arguments = run.arguments;
     run.requireInputs(0, 1);
     for (const char* option :
-         {"size", "border", "exemplar-box", "exemplar-mask", "drift", "draft", "method", "carry", "which",
-          "guide", "exemplar-guide", "guide-weight", "rotation-map", "scale-map"})
+         {"size", "border", "exemplar-box", "exemplar-mask", "drift", "draft", "method", "carry",
+          "carry-blend", "which", "guide", "exemplar-guide", "guide-weight", "rotation-map", "scale-map"})
         if (arguments.has(option))
             throw Error(ErrorCode::InvalidOption,
                         std::string("--") + option + ": has no meaning with --keep, which fills holes");
@@ -217,18 +209,6 @@ std::vector<LevelSet> loadExemplars(Run& run, ModelOptions options) {
     return exemplars;
 }
 
-// --carry: all that comes with the exemplars, or what is named.
-void keepCarried(const Run& run, std::vector<LevelSet>& exemplars) {
-    const std::string text = run.arguments.text("carry", "all");
-    if (text == "all") return;
-    for (const std::string& name : split(text)) {
-        bool found = false;
-        for (const LevelSet& exemplar : exemplars) found = found || carries(exemplar, name);
-        requireOption(found, "carry", name, "all, or names of what comes with the exemplar");
-    }
-    for (LevelSet& exemplar : exemplars) keepCarriedNames(exemplar, split(text));
-}
-
 std::vector<const LevelSet*> pointersTo(const std::vector<LevelSet>& models) {
     std::vector<const LevelSet*> pointers;
     for (const LevelSet& model : models) pointers.push_back(&model);
@@ -273,7 +253,7 @@ void synth(Run& run) {
     modelOptions.halfWidth = 3;
     modelOptions.carry = true;
     std::vector<LevelSet> exemplars = loadExemplars(run, modelOptions);
-    keepCarried(run, exemplars);
+    keepCarried(run.arguments, exemplars);
     if (run.arguments.has("exemplar-mask")) options.exemplarMask = run.loadMask("exemplar-mask");
     loadControls(run, voxelSizeOf(*exemplars.front().grid), options);
     const SynthResult result = synthesize(pointersTo(exemplars), options, run.context);
@@ -336,11 +316,10 @@ const Command kSynth{
       "auto: a ball round each loop of open edges"},
      {"source-map", "[FILE.vdb]",
       "also write the source map, for repeat (of a filled hole only what was copied from where); without "
-      "FILE "
-      "into the .vdb output",
+      "FILE into the .vdb output",
       false, 0, ".vdb"},
-     {"carry", "NAMES",
-      "which attributes and grids of the exemplar come along: all (default), or names with commas"},
+     carryOptions()[0],
+     carryOptions()[1],
      {"adaptivity", "A", "0 to 1: merge flat parts of a mesh output, default 0"}},
     synth};
 

@@ -250,4 +250,13 @@ Arguments parseArguments(const std::vector<Option>& options, const std::vector<s
     return arguments;
 }
 
+std::vector<std::string> splitAtCommas(const std::string& text) {
+    std::vector<std::string> parts;
+    std::size_t begin = 0;
+    for (std::size_t comma; (comma = text.find(',', begin)) != std::string::npos; begin = comma + 1)
+        parts.push_back(text.substr(begin, comma - begin));
+    parts.push_back(text.substr(begin));
+    return parts;
+}
+
 }  // namespace vdbsynth::cli

@@ -56,6 +56,9 @@ private:
 /// @throw Error InvalidOption (unknown option, with the nearest known name; a missing value; one given twice)
 Arguments parseArguments(const std::vector<Option>& options, const std::vector<std::string>& words);
 
+/// "a,b,,c" is four parts.
+std::vector<std::string> splitAtCommas(const std::string& text);
+
 /// The nearest of `names` to `word`, empty if none is near.
 std::string nearestName(const std::string& word, const std::vector<std::string>& names);
 

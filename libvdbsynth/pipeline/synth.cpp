@@ -154,6 +154,8 @@ SynthResult synthesize(const LevelSets& exemplars, const SynthOptions& options, 
                   "several exemplars, of which it says which goes where");
     requireOption(bool(options.guide) == !options.exemplarGuides.empty(), "guide", "alone",
                   "both --guide and --exemplar-guide");
+    requireOption(options.longestRun >= 0.01 && options.longestRun <= 1, "longest-run",
+                  std::to_string(options.longestRun), "from 0.01 to 1");
     requireOption(options.guideWeight >= 0.001 && options.guideWeight <= 1000, "guide-weight",
                   std::to_string(options.guideWeight), "from 0.001 to 1000");
     SynthPlan plan = planSynthesis(exemplars, options);

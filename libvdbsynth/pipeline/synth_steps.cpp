@@ -203,6 +203,7 @@ SynthPlan planSynthesis(const LevelSets& exemplars, const SynthOptions& options)
     plan.block.size = plan.map.targetBox.size();
     plan.block.block = options.block;
     plan.block.levels = options.levels;
+    plan.block.longestRun = options.longestRun;
     plan.block.drift = options.drift;
     plan.block.paper = options.method == SynthesisMethod::Paper;
     addExemplars(exemplars, options, plan);

@@ -16,7 +16,6 @@ constexpr std::uint32_t kDrawPurpose = 0x70730000;
 constexpr float kCostFloor = 0.02f;         // [voxels^2] added to costs before they are compared
 constexpr float kOverusePenalty = 2;        // share added for every time more than expected
 constexpr float kCompanionDiscount = 0.1f;  // share off for each neighbour that the source goes on from
-constexpr double kLongestRun = 0.2;        // share of an exemplar's surface that is copied in one piece
 constexpr float kTooMany = 8;               // times a source's cost that makes a longer piece
 constexpr float kAgreement = 0.01f;         // [voxels^2] cost of patches that agree
 constexpr std::size_t kPatchesAChunk = 64;
@@ -337,7 +336,7 @@ std::vector<std::uint8_t> patchesThatCount(const PatchLevel& level, const PatchM
 RoundCounts improveSources(const PatchLevel& level, const BrickField& field, int round, PatchMap& map,
                            const RunContext& ctx) {
     const std::vector<std::uint8_t> counted = patchesThatCount(level, map, field, ctx);
-    const std::vector<std::uint8_t> tooMany = patchesTooMany(level, map, counted, kLongestRun);
+    const std::vector<std::uint8_t> tooMany = patchesTooMany(level, map, counted, level.options->longestRun);
     const Uses uses(level, map, counted);
     std::vector<std::uint8_t> searches(counted.size());
     parallelFor(ctx, searches.size(), 1024, [&](std::size_t begin, std::size_t end) {
@@ -358,7 +357,7 @@ RoundCounts improveSources(const PatchLevel& level, const BrickField& field, int
 std::size_t shortenRuns(const PatchLevel& level, const BrickField& field, int round, PatchMap& map,
                         const RunContext& ctx) {
     const std::vector<std::uint8_t> counted = patchesThatCount(level, map, field, ctx);
-    const std::vector<std::uint8_t> tooMany = patchesTooMany(level, map, counted, kLongestRun);
+    const std::vector<std::uint8_t> tooMany = patchesTooMany(level, map, counted, level.options->longestRun);
     const auto many = std::size_t(std::count(tooMany.begin(), tooMany.end(), 1));
     if (many == 0) return 0;
     RoundCounts counts;

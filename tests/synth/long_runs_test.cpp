@@ -58,6 +58,7 @@ TEST_CASE("shortenRuns: a copy of all is cut to the share that may be copied in 
     const BrickField target = test::fieldFrom({40, 40, 40}, [&](const Index3& p) { return exemplar->at(p); });
     BlockSynthesisOptions options;
     options.size = {40, 40, 40};
+    options.longestRun = 0.15;
     const SynthesisPass pass{{exemplar}, options.size, 8, 1};
     PatchMap map;
     map.target = pass.target;

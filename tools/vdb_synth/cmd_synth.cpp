@@ -89,6 +89,9 @@ SynthOptions parseOptions(const Arguments& arguments) {
     options.draft = arguments.has("draft");
     options.carried = carriedValues(arguments);
     options.method = parseMethod(arguments);
+    options.longestRun = arguments.real("longest-run", 0.4, 0.01, 1);
+    if (arguments.has("longest-run") && (options.draft || options.method != SynthesisMethod::Default))
+        throw Error(ErrorCode::InvalidOption, "--longest-run: needs --method default and no --draft");
     options.halfWidth = float(arguments.real("half-width", 3, 1.5, 100));
     return options;
 }
@@ -136,9 +139,9 @@ void writeWithMap(Run& run, const LevelSet& model, const std::vector<GridPtr>& m
 void fill(Run& run) {
     const Arguments& arguments = run.arguments;
     run.requireInputs(0, 1);
-    for (const char* option :
-         {"size", "border", "exemplar-box", "exemplar-mask", "drift", "draft", "method", "carry",
-          "carry-blend", "which", "guide", "exemplar-guide", "guide-weight", "rotation-map", "scale-map"})
+    for (const char* option : {"size", "border", "exemplar-box", "exemplar-mask", "drift", "draft", "method",
+                               "carry", "carry-blend", "which", "guide", "exemplar-guide", "guide-weight",
+                               "longest-run", "rotation-map", "scale-map"})
         if (arguments.has(option))
             throw Error(ErrorCode::InvalidOption,
                         std::string("--") + option + ": has no meaning with --keep, which fills holes");
@@ -296,6 +299,9 @@ const Command kSynth{
      {"exemplar-mask", "FILE.vdb[:GRID]",
       "take blocks only from where this grid is active; its box is the domain (of the first exemplar)"},
      {"drift", "D", "how far sources may be from their own place along axes at 1x (voxels), default 0"},
+     {"longest-run", "S",
+      "share of the exemplar that may be copied in one piece, 0.01 to 1, default 0.4; less is newer and has "
+      "more joints"},
      {"which", "FILE",
       "with several exemplars: which one goes where in the result; a .vdb with a grid of numbers (0 is the "
       "first) or any model, inside which the second is used, outside it the first"},

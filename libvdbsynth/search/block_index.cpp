@@ -1,6 +1,7 @@
 #include "libvdbsynth/search/block_index_data.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/search/block_bound.h"
 #include "libvdbsynth/search/block_cost.h"
 
 #include <algorithm>
@@ -10,19 +11,6 @@
 
 namespace vdbsynth {
 namespace {
-
-// What the search keeps in its queue. Level 0 is a group, level l > 0 a node bounded by means level l - 1.
-struct Entry {
-    double bound;
-    std::uint32_t id;
-    std::uint32_t level;
-};
-
-bool laterInQueue(const Entry& a, const Entry& b) {
-    if (a.bound != b.bound) return a.bound > b.bound;
-    if (a.level != b.level) return a.level < b.level;
-    return a.id > b.id;
-}
 
 bool betterMatch(const BlockMatch& a, const BlockMatch& b) {
     return a.cost != b.cost ? a.cost < b.cost : a.position < b.position;
@@ -53,42 +41,17 @@ private:
     std::vector<BlockMatch> mMatches;
 };
 
-// The query's means at one level, and which of them are wholly known.
-struct QueryLevel {
-    std::vector<float> mean;
-    std::vector<Index3> offset;
-    double weight = 0;  // samples in a cube over known samples
+// A node that may still be the best match.
+struct Survivor {
+    float bound;
+    std::uint32_t node;
 };
 
-QueryLevel queryLevel(const BlockQuery& query, int block, int cell, std::int64_t known) {
-    QueryLevel level;
-    level.weight = double(cell) * cell * cell / double(known);
-    const int perSide = block / cell;
-    for (int x = 0; x < perSide; ++x)
-        for (int y = 0; y < perSide; ++y)
-            for (int z = 0; z < perSide; ++z) {
-                double sum = 0;
-                bool whole = true;
-                for (int i = 0; i < cell && whole; ++i)
-                    for (int j = 0; j < cell && whole; ++j) {
-                        const std::size_t row =
-                            (std::size_t(x * cell + i) * std::size_t(block) + std::size_t(y * cell + j)) *
-                                std::size_t(block) +
-                            std::size_t(z * cell);
-                        for (int k = 0; k < cell; ++k) {
-                            if (query.known && !query.known[row + std::size_t(k)]) {
-                                whole = false;
-                                break;
-                            }
-                            sum += double(query.samples[row + std::size_t(k)]);
-                        }
-                    }
-                if (!whole) continue;
-                level.mean.push_back(float(sum / (double(cell) * cell * cell)));
-                level.offset.push_back({x * cell, y * cell, z * cell});
-            }
-    return level;
-}
+// Survivors of one cube, at [begin, end) of all of them; at first they are groups.
+struct SurvivingCube {
+    float least;  // of their bounds
+    std::size_t begin, end;
+};
 
 class Search {
 public:
@@ -107,26 +70,21 @@ public:
         mMargin = 4e-7f * largest;  // two roundings to float, of a mean here and of one in the pyramid
     }
 
+    // Coarse to fine: what a level leaves is bounded by the next one, cube by cube, those with the least
+    // bound first. The node with the least bound so far is compared at once, so that the limit falls early.
     std::vector<BlockMatch> run() {
         if (mCandidates.empty()) return {};
         if (mKnown == 0) return firstPositions();
-        for (int cell : mData.cells) mLevels.push_back(queryLevel(mQuery, mData.block, cell, mKnown));
+        // A hint does not win a tie against a smaller position: bounds equal to the limit are still opened.
         for (const Index3& hint : mQuery.hints)
             if (mCandidates.contains(hint) && mData.eligible(hint)) mBest.add({hint, cost(hint)});
-        // A hint does not win a tie against a smaller position: bounds equal to the limit are still opened.
-        enqueueGroups();
-        while (!mQueue.empty()) {
-            const Entry front = mQueue.front();
-            if (front.bound > mBest.limit()) break;
-            std::pop_heap(mQueue.begin(), mQueue.end(), laterInQueue);
-            mQueue.pop_back();
-            if (front.level == 0)
-                openGroup(front.id);
-            else if (front.level < mLevels.size())
-                push(front.id, front.level + 1);
-            else
-                evaluate(front.id);
-        }
+        std::vector<SurvivingCube> groups = openGroups();
+        for (std::size_t l = 1; l < mData.cells.size(); ++l)
+            groups = refine(groups, mData.means[l], mData.cells[l], l < 2 ? kFewNodes : kFewBlocks);
+        const auto crowded = [](const SurvivingCube& g) { return g.end - g.begin > kFewBlocks; };
+        if (std::any_of(groups.begin(), groups.end(), crowded))
+            refine(groups, *mData.exemplar, 1, kFewBlocks);
+        compareSurvivors();
         return mBest.take();
     }
 
@@ -143,53 +101,159 @@ private:
         return mBest.take();
     }
 
-    void enqueueGroups() {
-        const QueryLevel& level = mLevels.front();
+    std::vector<SurvivingCube> openGroups() {
+        const QueryLevel level = queryLevel(mQuery, mData.block, mData.cells.front(), mKnown);
+        std::vector<SurvivingCube> all = boundGroups(level), opened;
+        const LevelBound bounds(level, mMargin);
+        probe(all, bounds);
+        for (SurvivingCube& cube : all) {
+            if (double(cube.least) > mBest.limit()) break;
+            gather(cube);
+            boundNodes(bounds, mData.means.front(), kFewNodes, cube);
+            if (cube.begin != cube.end) opened.push_back(cube);
+        }
+        return opened;
+    }
+
+    // Cubes with the groups in them that may hold the answer, those with the least bound first.
+    std::vector<SurvivingCube> boundGroups(const QueryLevel& level) {
+        std::vector<SurvivingCube> cubes;
+        Index3 last{-1, -1, -1};
         for (std::uint32_t g = 0; g < mData.groups.size(); ++g) {
             const BlockGroup& group = mData.groups[g];
             if (mRestricted && !group.shared && group.box.intersection(mCandidates).empty()) continue;
-            double bound = 0;
-            for (std::size_t i = 0; i < level.mean.size(); ++i) {
-                const std::size_t cell = cellNumber(level.offset[i]);
-                const float below = group.low[cell] - level.mean[i] - mMargin,
-                            above = level.mean[i] - group.high[cell] - mMargin;
-                const double d = double(std::max({below, above, 0.f}));
-                bound += d * d;
-            }
-            bound *= level.weight * kBoundSafety;
-            if (bound <= mBest.limit()) mQueue.push_back({bound, g, 0});
+            const float bound = groupBound(group, level);
+            if (double(bound) > mBest.limit()) continue;
+            const Index3 corner = cubeCorner(group.box.min);
+            if (!(corner == last)) cubes.push_back({bound, mGroups.size(), 0});
+            last = corner;
+            mGroups.push_back({bound, g});
+            cubes.back().least = std::min(cubes.back().least, bound);
+            cubes.back().end = mGroups.size();
         }
-        std::make_heap(mQueue.begin(), mQueue.end(), laterInQueue);
+        sortCubes(cubes);
+        return cubes;
     }
 
-    std::size_t cellNumber(const Index3& offset) const {
-        return std::size_t((offset.x ? 4 : 0) + (offset.y ? 2 : 0) + (offset.z ? 1 : 0));
+    // Follows the cubes with the least bounds all the way down, for a limit that leaves little to do.
+    void probe(const std::vector<SurvivingCube>& cubes, const LevelBound& coarsest) {
+        std::vector<SurvivingCube> few;
+        for (std::size_t i = 0; i < std::min(cubes.size(), kProbedCubes); ++i) {
+            few.push_back(cubes[i]);
+            gather(few.back());
+            boundNodes(coarsest, mData.means.front(), kFewNodes, few.back());
+        }
+        for (std::size_t l = 1; l < mData.cells.size(); ++l)
+            few = refine(few, mData.means[l], mData.cells[l], l < 2 ? kFewNodes : kFewBlocks);
+        std::partial_sort(mSurvivors.begin(),
+                          mSurvivors.begin() + std::ptrdiff_t(std::min(mSurvivors.size(), kProbedNodes)),
+                          mSurvivors.end(), lessBound);
+        mSurvivors.resize(std::min(mSurvivors.size(), kProbedNodes));
+        compareSurvivors();
+        mSurvivors.clear();
+        mLeast = std::numeric_limits<float>::infinity();
     }
 
-    void openGroup(std::uint32_t g) {
-        ++mCounts.groups;
-        const BlockGroup& group = mData.groups[g];
-        for (std::uint32_t node = group.first; node < group.last; ++node) {
-            if (mRestricted && !mData.isShared(node) && !mCandidates.contains(mData.position(node))) continue;
-            push(node, 1);
+    // The nodes of a cube's groups that may be the answer.
+    void gather(const SurvivingCube& cube) {
+        mNodes.clear();
+        for (std::size_t i = cube.begin; i < cube.end; ++i) {
+            const auto& [bound, group] = mGroups[i];
+            if (double(bound) > mBest.limit()) continue;
+            ++mCounts.groups;
+            const BlockGroup& of = mData.groups[group];
+            for (std::uint32_t node = of.first; node < of.last; ++node)
+                if (!mRestricted || mData.isShared(node) || mCandidates.contains(mData.position(node)))
+                    mNodes.push_back({bound, node});
         }
     }
 
-    void push(std::uint32_t node, std::uint32_t level) {
-        ++mCounts.nodes;
-        const QueryLevel& means = mLevels[level - 1];
-        const BrickField& field = mData.means[level - 1];
-        const Index3 corner = mData.position(node);
+    float groupBound(const BlockGroup& group, const QueryLevel& level) const {
         double bound = 0;
-        for (std::size_t i = 0; i < means.mean.size(); ++i) {
-            const float d =
-                std::max(std::abs(field.inside(corner + means.offset[i]) - means.mean[i]) - mMargin, 0.f);
-            bound += double(d) * double(d);
+        for (std::size_t i = 0; i < level.mean.size(); ++i) {
+            const Index3& offset = level.offset[i];
+            const std::size_t cell =
+                std::size_t((offset.x ? 4 : 0) + (offset.y ? 2 : 0) + (offset.z ? 1 : 0));
+            const float below = group.low[cell] - level.mean[i] - mMargin,
+                        above = level.mean[i] - group.high[cell] - mMargin;
+            const double d = double(std::max({below, above, 0.f}));
+            bound += d * d;
         }
-        bound *= means.weight * kBoundSafety;
-        if (bound > mBest.limit()) return;
-        mQueue.push_back({bound, node, level});
-        std::push_heap(mQueue.begin(), mQueue.end(), laterInQueue);
+        return float(bound * level.weight * kGroupSafety);
+    }
+
+    // Bounds the nodes in mNodes that are still worth it, and keeps as survivors those that stay so.
+    void boundNodes(const LevelBound& level, const BrickField& field, std::size_t few, SurvivingCube& cube) {
+        cube.begin = mSurvivors.size();
+        cube.least = std::numeric_limits<float>::infinity();
+        const float limit = float(mBest.limit());
+        mCounts.nodes += mNodes.size();
+        if (mNodes.size() > few) {
+            const Index3 corner = cubeCorner(mData.position(mNodes.front().node));
+            const std::vector<float>& bounds = mCube.bound(level, field, corner, limit);
+            for (Survivor& node : mNodes)
+                node.bound = std::max(node.bound, bounds[placeInCube(mData.position(node.node))]);
+        } else {
+            for (Survivor& node : mNodes)
+                node.bound = std::max(node.bound, level.ofNode(field, mData.position(node.node), limit));
+        }
+        Survivor best{std::numeric_limits<float>::infinity(), 0};
+        for (const Survivor& node : mNodes) {
+            if (double(node.bound) > mBest.limit()) continue;
+            mSurvivors.push_back(node);
+            if (node.bound < best.bound) best = node;
+        }
+        cube.end = mSurvivors.size();
+        cube.least = best.bound;
+        if (best.bound < mLeast) {
+            mLeast = best.bound;
+            evaluate(best.node);
+        }
+    }
+
+    // Sums over the samples themselves bound nothing that a comparison would not tell: few are left for that.
+    std::vector<SurvivingCube> refine(std::vector<SurvivingCube> cubes, const BrickField& field, int cell,
+                                      std::size_t few) {
+        const QueryLevel level = queryLevel(mQuery, mData.block, cell, mKnown);
+        const LevelBound bounds(level, mMargin);
+        const std::vector<Survivor> before = std::move(mSurvivors);
+        mSurvivors.clear();
+        mLeast = std::numeric_limits<float>::infinity();
+        sortCubes(cubes);
+        std::vector<SurvivingCube> left;
+        for (SurvivingCube& cube : cubes) {
+            if (double(cube.least) > mBest.limit()) break;
+            mNodes.clear();
+            for (std::size_t i = cube.begin; i < cube.end; ++i)
+                if (double(before[i].bound) <= mBest.limit()) mNodes.push_back(before[i]);
+            if (cell < mData.block / 4 && mNodes.size() <= few) {
+                cube.begin = mSurvivors.size();
+                mSurvivors.insert(mSurvivors.end(), mNodes.begin(), mNodes.end());
+                cube.end = mSurvivors.size();
+            } else {
+                boundNodes(bounds, field, few, cube);
+            }
+            if (cube.begin != cube.end) left.push_back(cube);
+        }
+        return left;
+    }
+
+    void compareSurvivors() {
+        std::sort(mSurvivors.begin(), mSurvivors.end(), lessBound);
+        for (const Survivor& survivor : mSurvivors) {
+            if (double(survivor.bound) > mBest.limit()) break;
+            evaluate(survivor.node);
+        }
+    }
+
+    static bool lessBound(const Survivor& a, const Survivor& b) {
+        return a.bound != b.bound ? a.bound < b.bound : a.node < b.node;
+    }
+
+    static void sortCubes(std::vector<SurvivingCube>& groups) {
+        std::sort(groups.begin(), groups.end(), [](const SurvivingCube& a, const SurvivingCube& b) {
+            return a.least != b.least ? a.least < b.least : a.begin < b.begin;
+        });
     }
 
     void evaluate(std::uint32_t node) { addMembers(node, cost(mData.position(node))); }
@@ -201,8 +265,11 @@ private:
         });
     }
 
-    // Sums of squares of floats against sums of rounded floats: relative error below 1e-6.
-    static constexpr double kBoundSafety = 1 - 2e-6;
+    // Squares of floats against sums of rounded floats: relative error below 1e-6.
+    static constexpr double kGroupSafety = 1 - 2e-6;
+    static constexpr std::size_t kProbedCubes = 8, kProbedNodes = 8;
+    // Up to so many nodes of a cube are bounded one by one.
+    static constexpr std::size_t kFewNodes = 48, kFewBlocks = 64;
 
     const BlockIndexData& mData;
     const BlockQuery& mQuery;
@@ -212,8 +279,10 @@ private:
     IndexBox mCandidates;
     bool mRestricted = false;
     float mMargin = 0;
-    std::vector<QueryLevel> mLevels;
-    std::vector<Entry> mQueue;
+    float mLeast = std::numeric_limits<float>::infinity();
+    CubeBounds mCube;
+    std::vector<std::pair<float, std::uint32_t>> mGroups;  // bounds and numbers
+    std::vector<Survivor> mNodes, mSurvivors;
 };
 
 }  // namespace

@@ -12,19 +12,20 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <utility>
 
 namespace vdbsynth {
 namespace {
 
-constexpr int kGroup = kPositionGroup;
+constexpr int kGroup = kNodeGroup;
 
 std::vector<int> cellsFor(int block) {
     std::vector<int> cells{block / 2};
     // Sixty-four means pay from cubes of 2 on; five hundred and twelve only where the leaf is much larger
     // still.
     if (block / 4 >= 2) cells.push_back(block / 4);
-    for (int cell = block / 8; cell >= 4; cell /= 2) cells.push_back(cell);
+    for (int cell = block / 8; cell >= 2; cell /= 2) cells.push_back(cell);
     return cells;
 }
 
@@ -87,9 +88,13 @@ void makeGroups(BlockIndexData& data, std::vector<std::uint64_t> firsts, const s
         const Index3 p = data.positionOf(number);
         return data.numberOf({p.x / kGroup * kGroup, p.y / kGroup * kGroup, p.z / kGroup * kGroup});
     };
+    const auto cubeKey = [&](std::uint64_t number) {
+        const Index3 p = data.positionOf(number);
+        return data.numberOf(
+            {p.x / kNodeCube * kNodeCube, p.y / kNodeCube * kNodeCube, p.z / kNodeCube * kNodeCube});
+    };
     std::sort(firsts.begin(), firsts.end(), [&](std::uint64_t a, std::uint64_t b) {
-        const std::uint64_t ga = groupKey(a), gb = groupKey(b);
-        return ga != gb ? ga < gb : a < b;
+        return std::make_tuple(cubeKey(a), groupKey(a), a) < std::make_tuple(cubeKey(b), groupKey(b), b);
     });
     data.nodes = std::move(firsts);
     data.memberBegin.assign(data.nodes.size() + 1, 0);
@@ -179,7 +184,9 @@ BlockIndexData buildBlockIndexData(std::shared_ptr<const BrickField> exemplar,
     }
     const std::size_t varied = countVariedGroups(data, ctx);
     // A varied position costs a node, twice its hash while they are sorted, and a sample of each mean.
-    requireMemory(ctx, double(varied) * kGroup * kGroup * kGroup * (64 + 4 * double(data.cells.size())),
+    requireMemory(ctx,
+                  double(varied) * kPositionGroup * kPositionGroup * kPositionGroup *
+                      (64 + 4 * double(data.cells.size())),
                   "the search index", "use a smaller --exemplar-box or larger voxels");
     for (int cell : data.cells) data.means.push_back(slidingMean(*data.exemplar, cell, ctx));
     std::vector<Hashed> all = hashBlocks(data, ctx);

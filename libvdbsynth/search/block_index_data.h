@@ -14,6 +14,10 @@ struct PositionRun {
     std::uint32_t length = 0;
 };
 
+/// Nodes whose first positions are in one cube of side kNodeGroup are a group; groups in one cube of side
+/// kNodeCube follow each other and are bounded together.
+inline constexpr int kNodeGroup = 4, kNodeCube = 8;
+
 /// A run of nodes whose positions are neighbours, with the range of each of their eight coarsest means.
 struct BlockGroup {
     IndexBox box;                       // of the nodes' first positions

@@ -1,0 +1,61 @@
+#pragma once
+#include "libvdbsynth/search/block_index_data.h"
+
+#include <vector>
+
+namespace vdbsynth {
+
+/// A query's means over cubes, those of them that are wholly known.
+struct QueryLevel {
+    std::vector<float> mean;
+    std::vector<Index3> offset;
+    double weight = 0;  ///< samples in a cube over known samples
+};
+
+/// @param cell   side of the cubes [voxels]; 1: the samples themselves
+/// @param known  number of known samples
+QueryLevel queryLevel(const BlockQuery& query, int block, int cell, std::int64_t known);
+
+/// What blockCost is at least, from the means of one level [lagae2004, Eq. 2]; in floats, lowered by what
+/// their rounding may be.
+class LevelBound {
+public:
+    /// @param margin  by how much two means may differ by rounding
+    LevelBound(const QueryLevel& level, float margin);
+
+    /// Of the block at a position; one read for each mean. Once it exceeds the limit, something that does.
+    float ofNode(const BrickField& field, const Index3& position, float limit) const;
+
+private:
+    friend class CubeBounds;
+    // From the sum of squares: by the triangle inequality the margin comes off its root.
+    float from(float squares) const;
+    const QueryLevel& mLevel;
+    float mMargin, mScale;  // margin of all means together
+    int mReach = 0;         // largest offset
+};
+
+/// Bounds of all positions of a cube at once: the samples that they share are read once, and eight
+/// neighbours along z are bounded side by side.
+class CubeBounds {
+public:
+    /// @param corner  cubeCorner of the cube
+    /// @param limit   a row of bounds that all exceed it may be left at any that do
+    /// @return one bound for each placeInCube, valid until the next call
+    const std::vector<float>& bound(const LevelBound& level, const BrickField& field, const Index3& corner,
+                                    float limit);
+
+private:
+    std::vector<float> mSamples, mBounds;
+    std::vector<std::ptrdiff_t> mSteps;
+};
+
+/// Minimum corner of the cube that a position is in.
+inline Index3 cubeCorner(const Index3& p) {
+    return {p.x / kNodeCube * kNodeCube, p.y / kNodeCube * kNodeCube, p.z / kNodeCube * kNodeCube};
+}
+inline std::size_t placeInCube(const Index3& p) {
+    return std::size_t((p.x % kNodeCube * kNodeCube + p.y % kNodeCube) * kNodeCube + p.z % kNodeCube);
+}
+
+}  // namespace vdbsynth

@@ -73,43 +73,51 @@ LevelBound::LevelBound(const QueryLevel& level, float margin)
     for (const Index3& offset : level.offset) mReach = std::max({mReach, offset.x, offset.y, offset.z});
 }
 
+float LevelBound::squaresFor(double limit) const {
+    const double root = std::sqrt(limit / double(mScale)) + double(mMargin);
+    return float(root * root * (1 + 1e-6));
+}
+
 float LevelBound::from(float squares) const {
     const float left = std::max(std::sqrt(squares) - mMargin, 0.f);
     return left * left * mScale;
 }
 
-float LevelBound::ofNode(const BrickField& field, const Index3& position, float limit) const {
+float LevelBound::ofNode(const LevelField& field, const Index3& position, float limit) const {
     float sum = 0;
     for (std::size_t i = 0; i < mLevel.mean.size(); ++i) {
-        const float d = field.inside(position + mLevel.offset[i]) - mLevel.mean[i];
+        const float d = field.at(position + mLevel.offset[i]) - mLevel.mean[i];
         sum += d * d;
-        if (i % kLanes == kLanes - 1 && from(sum) > limit) break;
+        if (i % kLanes == kLanes - 1 && sum > limit) break;
     }
-    return from(sum);
+    return sum;
 }
 
-const std::vector<float>& CubeBounds::bound(const LevelBound& level, const BrickField& field,
+const std::vector<float>& CubeBounds::bound(const LevelBound& level, const LevelField& field,
                                             const Index3& corner, float limit) {
+    const bool dense = !field.dense.samples.empty();
     const int side = kNodeCube + level.mReach;
-    mSamples.resize(std::size_t(side) * std::size_t(side) * std::size_t(side));
-    field.readBox(corner, {side, side, side}, mSamples.data());
+    if (!dense) {
+        mSamples.resize(std::size_t(side) * std::size_t(side) * std::size_t(side));
+        field.bricks->readBox(corner, {side, side, side}, mSamples.data());
+    }
+    const float* samples = dense ? field.dense.row(corner.x, corner.y, corner.z) : mSamples.data();
+    const std::ptrdiff_t row = dense ? field.dense.size.z : side,
+                         plane = row * (dense ? field.dense.size.y : side);
     mSteps.clear();
-    for (const Index3& o : level.mLevel.offset)
-        mSteps.push_back((std::ptrdiff_t(o.x) * side + o.y) * side + o.z);
-    mBounds.assign(std::size_t(kNodeCube * kNodeCube * kNodeCube), 0.f);
+    for (const Index3& o : level.mLevel.offset) mSteps.push_back(o.x * plane + o.y * row + o.z);
+    mSums.assign(std::size_t(kNodeCube * kNodeCube * kNodeCube), 0.f);
     const std::size_t count = mSteps.size();
     for (int x = 0; x < kNodeCube; ++x)
         for (int y = 0; y < kNodeCube; y += kRows) {
-            float* sums = mBounds.data() + (x * kNodeCube + y) * kNodeCube;
-            const float* first = mSamples.data() + (std::ptrdiff_t(x) * side + y) * side;
+            float* sums = mSums.data() + (x * kNodeCube + y) * kNodeCube;
             for (std::size_t i = 0; i < count; i += kBetweenLooks) {
-                if (level.from(*std::min_element(sums, sums + kRows * kLanes)) > limit) break;
-                addSquares(first, side, mSteps.data() + i, level.mLevel.mean.data() + i,
-                           std::min(kBetweenLooks, count - i), sums);
+                if (*std::min_element(sums, sums + kRows * kLanes) > limit) break;
+                addSquares(samples + x * plane + y * row, row, mSteps.data() + i,
+                           level.mLevel.mean.data() + i, std::min(kBetweenLooks, count - i), sums);
             }
         }
-    for (float& bound : mBounds) bound = level.from(bound);
-    return mBounds;
+    return mSums;
 }
 
 }  // namespace vdbsynth

@@ -23,13 +23,15 @@ public:
     /// @param margin  by how much two means may differ by rounding
     LevelBound(const QueryLevel& level, float margin);
 
-    /// Of the block at a position; one read for each mean. Once it exceeds the limit, something that does.
-    float ofNode(const BrickField& field, const Index3& position, float limit) const;
+    /// A sum of squares that is no more than this may be within a limit.
+    float squaresFor(double limit) const;
+    /// From the sum of squares: by the triangle inequality the margin comes off its root.
+    float from(float squares) const;
+    /// Sum of squares of the block at a position; once it exceeds the limit, something that does.
+    float ofNode(const LevelField& field, const Index3& position, float limit) const;
 
 private:
     friend class CubeBounds;
-    // From the sum of squares: by the triangle inequality the margin comes off its root.
-    float from(float squares) const;
     const QueryLevel& mLevel;
     float mMargin, mScale;  // margin of all means together
     int mReach = 0;         // largest offset
@@ -40,22 +42,14 @@ private:
 class CubeBounds {
 public:
     /// @param corner  cubeCorner of the cube
-    /// @param limit   a row of bounds that all exceed it may be left at any that do
-    /// @return one bound for each placeInCube, valid until the next call
-    const std::vector<float>& bound(const LevelBound& level, const BrickField& field, const Index3& corner,
+    /// @param limit   sums of rows that all exceed it may be left at any that do
+    /// @return one sum of squares for each placeInCube, valid until the next call
+    const std::vector<float>& bound(const LevelBound& level, const LevelField& field, const Index3& corner,
                                     float limit);
 
 private:
-    std::vector<float> mSamples, mBounds;
+    std::vector<float> mSamples, mSums;
     std::vector<std::ptrdiff_t> mSteps;
 };
-
-/// Minimum corner of the cube that a position is in.
-inline Index3 cubeCorner(const Index3& p) {
-    return {p.x / kNodeCube * kNodeCube, p.y / kNodeCube * kNodeCube, p.z / kNodeCube * kNodeCube};
-}
-inline std::size_t placeInCube(const Index3& p) {
-    return std::size_t((p.x % kNodeCube * kNodeCube + p.y % kNodeCube) * kNodeCube + p.z % kNodeCube);
-}
 
 }  // namespace vdbsynth

@@ -83,7 +83,7 @@ public:
             groups = refine(groups, mData.means[l], mData.cells[l], l < 2 ? kFewNodes : kFewBlocks);
         const auto crowded = [](const SurvivingCube& g) { return g.end - g.begin > kFewBlocks; };
         if (std::any_of(groups.begin(), groups.end(), crowded))
-            refine(groups, *mData.exemplar, 1, kFewBlocks);
+            refine(groups, mData.means.back(), 1, kFewBlocks);
         compareSurvivors();
         return mBest.take();
     }
@@ -183,25 +183,25 @@ private:
     }
 
     // Bounds the nodes in mNodes that are still worth it, and keeps as survivors those that stay so.
-    void boundNodes(const LevelBound& level, const BrickField& field, std::size_t few, SurvivingCube& cube) {
+    void boundNodes(const LevelBound& level, const LevelField& field, std::size_t few, SurvivingCube& cube) {
         cube.begin = mSurvivors.size();
         cube.least = std::numeric_limits<float>::infinity();
-        const float limit = float(mBest.limit());
+        const float limit = level.squaresFor(mBest.limit());
         mCounts.nodes += mNodes.size();
+        Survivor best{std::numeric_limits<float>::infinity(), 0};
+        const auto keep = [&](const Survivor& node, float squares) {
+            if (squares > limit) return;
+            const float bound = std::max(node.bound, level.from(squares));
+            mSurvivors.push_back({bound, node.node});
+            if (bound < best.bound) best = mSurvivors.back();
+        };
         if (mNodes.size() > few) {
             const Index3 corner = cubeCorner(mData.position(mNodes.front().node));
-            const std::vector<float>& bounds = mCube.bound(level, field, corner, limit);
-            for (Survivor& node : mNodes)
-                node.bound = std::max(node.bound, bounds[placeInCube(mData.position(node.node))]);
+            const std::vector<float>& sums = mCube.bound(level, field, corner, limit);
+            for (const Survivor& node : mNodes) keep(node, sums[mData.places[node.node]]);
         } else {
-            for (Survivor& node : mNodes)
-                node.bound = std::max(node.bound, level.ofNode(field, mData.position(node.node), limit));
-        }
-        Survivor best{std::numeric_limits<float>::infinity(), 0};
-        for (const Survivor& node : mNodes) {
-            if (double(node.bound) > mBest.limit()) continue;
-            mSurvivors.push_back(node);
-            if (node.bound < best.bound) best = node;
+            for (const Survivor& node : mNodes)
+                keep(node, level.ofNode(field, mData.position(node.node), limit));
         }
         cube.end = mSurvivors.size();
         cube.least = best.bound;
@@ -212,7 +212,7 @@ private:
     }
 
     // Sums over the samples themselves bound nothing that a comparison would not tell: few are left for that.
-    std::vector<SurvivingCube> refine(std::vector<SurvivingCube> cubes, const BrickField& field, int cell,
+    std::vector<SurvivingCube> refine(std::vector<SurvivingCube> cubes, const LevelField& field, int cell,
                                       std::size_t few) {
         const QueryLevel level = queryLevel(mQuery, mData.block, cell, mKnown);
         const LevelBound bounds(level, mMargin);

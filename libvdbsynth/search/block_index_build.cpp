@@ -97,6 +97,7 @@ void makeGroups(BlockIndexData& data, std::vector<std::uint64_t> firsts, const s
         return std::make_tuple(cubeKey(a), groupKey(a), a) < std::make_tuple(cubeKey(b), groupKey(b), b);
     });
     data.nodes = std::move(firsts);
+    data.places.resize(data.nodes.size());
     data.memberBegin.assign(data.nodes.size() + 1, 0);
     const int half = data.cells.front();
     for (std::uint32_t node = 0; node < data.nodes.size(); ++node) {
@@ -106,6 +107,7 @@ void makeGroups(BlockIndexData& data, std::vector<std::uint64_t> firsts, const s
                                            [key](const Member& m) { return m.node < key; });
         for (; member != members.end() && member->node == key; ++member) data.members.push_back(member->run);
         const Index3 p = data.position(node);
+        data.places[node] = std::uint16_t(placeInCube(p));
         if (node == 0 || groupKey(data.nodes[node]) != groupKey(data.nodes[node - 1])) {
             BlockGroup group;
             group.box = {p, p};
@@ -123,7 +125,7 @@ void makeGroups(BlockIndexData& data, std::vector<std::uint64_t> firsts, const s
         }
         for (std::size_t c = 0; c < 8; ++c) {
             const float mean =
-                data.means.front().inside(p + Index3{c & 4 ? half : 0, c & 2 ? half : 0, c & 1 ? half : 0});
+                data.means.front().at(p + Index3{c & 4 ? half : 0, c & 2 ? half : 0, c & 1 ? half : 0});
             group.low[c] = std::min(group.low[c], mean);
             group.high[c] = std::max(group.high[c], mean);
         }
@@ -139,9 +141,9 @@ bool BlockIndexData::eligible(const Index3& p) const {
 
 std::size_t BlockIndexData::memoryBytes() const {
     std::size_t bytes = exemplar->memoryBytes() + groups.size() * sizeof(BlockGroup) +
-                        nodes.size() * sizeof(std::uint64_t) + memberBegin.size() * sizeof(std::uint32_t) +
-                        members.size() * sizeof(PositionRun);
-    for (const BrickField& field : means) bytes += field.memoryBytes();
+                        nodes.size() * (sizeof(std::uint64_t) + sizeof(std::uint16_t)) +
+                        memberBegin.size() * sizeof(std::uint32_t) + members.size() * sizeof(PositionRun);
+    for (const LevelField& field : means) bytes += field.memoryBytes();
     return bytes;
 }
 
@@ -160,6 +162,22 @@ bool blockInsideMask(const BrickField& mask, const Index3& corner, int block) {
     mask.readBox(corner, {block, block, block}, values.data());
     return std::all_of(values.begin(), values.end(), [](float v) { return v == 1.f; });
 }
+
+namespace {
+
+void makeDense(LevelField& field, const RunContext& ctx) {
+    const Index3 beyond{kNodeCube, kNodeCube, kNodeCube};
+    field.dense.size = field.bricks->box().size() + beyond;
+    const std::size_t plane = std::size_t(field.dense.size.y) * std::size_t(field.dense.size.z);
+    field.dense.samples.resize(std::size_t(field.dense.size.x) * plane);
+    parallelFor(ctx, std::size_t(field.dense.size.x), 4, [&](std::size_t begin, std::size_t end) {
+        field.bricks->readBox({int(begin), 0, 0}, {int(end - begin), field.dense.size.y, field.dense.size.z},
+                              field.dense.samples.data() + begin * plane);
+    });
+    field.bricks.reset();
+}
+
+}  // namespace
 
 BlockIndexData buildBlockIndexData(std::shared_ptr<const BrickField> exemplar,
                                    const BlockIndexOptions& options, const RunContext& ctx) {
@@ -188,7 +206,14 @@ BlockIndexData buildBlockIndexData(std::shared_ptr<const BrickField> exemplar,
                   double(varied) * kPositionGroup * kPositionGroup * kPositionGroup *
                       (64 + 4 * double(data.cells.size())),
                   "the search index", "use a smaller --exemplar-box or larger voxels");
-    for (int cell : data.cells) data.means.push_back(slidingMean(*data.exemplar, cell, ctx));
+    for (int cell : data.cells)
+        data.means.push_back(
+            {std::make_shared<const BrickField>(slidingMean(*data.exemplar, cell, ctx)), {}});
+    data.means.push_back({data.exemplar, {}});
+    const bool dense =
+        double(varied) * kPositionGroup * kPositionGroup * kPositionGroup > 0.7 * double(box.volume());
+    for (LevelField& field : data.means)
+        if (dense) makeDense(field, ctx);
     std::vector<Hashed> all = hashBlocks(data, ctx);
     if (all.empty())
         throw Error(ErrorCode::Unusable, "--exemplar-mask: no block of " + std::to_string(options.block) +

@@ -1,4 +1,5 @@
 #pragma once
+#include "libvdbsynth/grid/dense_field.h"
 #include "libvdbsynth/search/block_index.h"
 
 #include <algorithm>
@@ -18,12 +19,33 @@ struct PositionRun {
 /// kNodeCube follow each other and are bounded together.
 inline constexpr int kNodeGroup = 4, kNodeCube = 8;
 
+inline Index3 cubeCorner(const Index3& p) {
+    return {p.x / kNodeCube * kNodeCube, p.y / kNodeCube * kNodeCube, p.z / kNodeCube * kNodeCube};
+}
+inline std::size_t placeInCube(const Index3& p) {
+    return std::size_t((p.x % kNodeCube * kNodeCube + p.y % kNodeCube) * kNodeCube + p.z % kNodeCube);
+}
+
 /// A run of nodes whose positions are neighbours, with the range of each of their eight coarsest means.
 struct BlockGroup {
     IndexBox box;                       // of the nodes' first positions
     std::uint32_t first = 0, last = 0;  // nodes
     bool shared = false;                // some node stands for several positions, which may lie anywhere
     std::array<float, 8> low, high;
+};
+
+/// The field that bounds of one level are read from: in bricks, or as one array where nearly all of it
+/// varies.
+struct LevelField {
+    std::shared_ptr<const BrickField> bricks;  ///< null where `dense` is not empty
+    DenseField dense;                          ///< kNodeCube voxels longer than the field along each axis
+
+    float at(const Index3& p) const {
+        return dense.samples.empty() ? bricks->inside(p) : *dense.row(p.x, p.y, p.z);
+    }
+    std::size_t memoryBytes() const {
+        return (bricks ? bricks->memoryBytes() : 0) + dense.samples.size() * sizeof(float);
+    }
 };
 
 /// The search tree as flat arrays, read by block_index.cpp and built by block_index_build.cpp.
@@ -34,8 +56,9 @@ struct BlockIndexData {
     float largest = 0;              // largest |sample|
     IndexBox positions;             // of block minimum corners
     std::vector<int> cells;         // sides of the means' cubes, coarse to fine
-    std::vector<BrickField> means;  // one field a level
+    std::vector<LevelField> means;  // one field a level, and the exemplar itself
     std::vector<BlockGroup> groups;
+    std::vector<std::uint16_t> places;       // placeInCube of each node's first position
     std::vector<std::uint64_t> nodes;        // first position of each node, as its number in `positions`
     std::vector<std::uint32_t> memberBegin;  // [nodes + 1] into members
     std::vector<PositionRun> members;        // further positions of shared nodes, ascending

@@ -5,6 +5,7 @@
 #include "libvdbsynth/search/block_cost.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -103,8 +104,8 @@ private:
 
     std::vector<SurvivingCube> openGroups() {
         const QueryLevel level = queryLevel(mQuery, mData.block, mData.cells.front(), mKnown);
-        std::vector<SurvivingCube> all = boundGroups(level), opened;
         const LevelBound bounds(level, mMargin);
+        std::vector<SurvivingCube> all = boundGroups(level, bounds), opened;
         probe(all, bounds);
         for (SurvivingCube& cube : all) {
             if (double(cube.least) > mBest.limit()) break;
@@ -116,14 +117,23 @@ private:
     }
 
     // Cubes with the groups in them that may hold the answer, those with the least bound first.
-    std::vector<SurvivingCube> boundGroups(const QueryLevel& level) {
+    std::vector<SurvivingCube> boundGroups(const QueryLevel& level, const LevelBound& bounds) {
         std::vector<SurvivingCube> cubes;
+        std::array<float, 8> mean{}, known{};
+        for (std::size_t i = 0; i < level.mean.size(); ++i) {
+            const Index3& o = level.offset[i];
+            const std::size_t cell = std::size_t((o.x ? 4 : 0) + (o.y ? 2 : 0) + (o.z ? 1 : 0));
+            mean[cell] = level.mean[i];
+            known[cell] = 1;
+        }
+        const float limit = bounds.squaresFor(mBest.limit());
         Index3 last{-1, -1, -1};
         for (std::uint32_t g = 0; g < mData.groups.size(); ++g) {
             const BlockGroup& group = mData.groups[g];
             if (mRestricted && !group.shared && group.box.intersection(mCandidates).empty()) continue;
-            const float bound = groupBound(group, level);
-            if (double(bound) > mBest.limit()) continue;
+            const float squares = squaresBeyond(group, mean, known);
+            if (squares > limit) continue;
+            const float bound = bounds.from(squares);
             const Index3 corner = cubeCorner(group.box.min);
             if (!(corner == last)) cubes.push_back({bound, mGroups.size(), 0});
             last = corner;
@@ -168,18 +178,16 @@ private:
         }
     }
 
-    float groupBound(const BlockGroup& group, const QueryLevel& level) const {
-        double bound = 0;
-        for (std::size_t i = 0; i < level.mean.size(); ++i) {
-            const Index3& offset = level.offset[i];
-            const std::size_t cell =
-                std::size_t((offset.x ? 4 : 0) + (offset.y ? 2 : 0) + (offset.z ? 1 : 0));
-            const float below = group.low[cell] - level.mean[i] - mMargin,
-                        above = level.mean[i] - group.high[cell] - mMargin;
-            const double d = double(std::max({below, above, 0.f}));
-            bound += d * d;
+    // How far the query's eight means lie beyond the group's ranges; of means that are not known, nothing.
+    static float squaresBeyond(const BlockGroup& group, const std::array<float, 8>& mean,
+                               const std::array<float, 8>& known) {
+        float squares[8], sum = 0;
+        for (std::size_t k = 0; k < 8; ++k) {
+            const float beyond = std::max(group.low[k] - mean[k], mean[k] - group.high[k]) * known[k];
+            squares[k] = beyond > 0 ? beyond * beyond : 0.f;
         }
-        return float(bound * level.weight * kGroupSafety);
+        for (float square : squares) sum += square;
+        return sum;
     }
 
     // Bounds the nodes in mNodes that are still worth it, and keeps as survivors those that stay so.
@@ -265,8 +273,6 @@ private:
         });
     }
 
-    // Squares of floats against sums of rounded floats: relative error below 1e-6.
-    static constexpr double kGroupSafety = 1 - 2e-6;
     static constexpr std::size_t kProbedCubes = 8, kProbedNodes = 8;
     // Up to so many nodes of a cube are bounded one by one.
     static constexpr std::size_t kFewNodes = 48, kFewBlocks = 64;

@@ -37,7 +37,11 @@ struct BlockIndexOptions {
 
 /// Exact best-match search over all blocks of a sparse field: the search tree of [lagae2004, section 4].
 /// A node's bound is its distance at a level of the block pyramid, never above the distance at a finer one
-/// (Eq. 2); nodes are opened best first; the first leaf to reach the front is the best match. Here
+/// (Eq. 2). Here
+///  - not node by node, best first, but level by level: what one leaves is bounded by the next, cube by cube
+///  of
+///    8^3 positions (block_bound.h), those with the least bounds first; before that the best few cubes are
+///    followed all the way down, so that the limit is low from the beginning;
 ///  - levels are means over cubes of N/2, N/4 ... samples, any N; under a query's mask a cube counts only if
 ///  it
 ///    is wholly known, and whatever the cubes leave out counts as 0, so bounds hold for any mask;
@@ -50,8 +54,8 @@ public:
     /// @param exemplar  box begins at 0; kept alive and shared
     /// @throw Error InvalidOption (--block out of range), Unusable (block larger than the exemplar, no
     ///              block inside the mask), Memory (by ctx.maxMemory), Cancelled
-    /// @par Cost    time O(positions whose blocks are not constant * N), memory 12 bytes each of those and 4
-    ///              for each of their means; constant blocks cost 16 bytes a run along z
+    /// @par Cost    time O(positions whose blocks are not constant * N), memory 14 bytes each of those and 4
+    ///              for each of their means and once more; constant blocks cost 16 bytes a run along z
     /// @par Repeats same bits for any number of threads
     static BlockIndex build(std::shared_ptr<const BrickField> exemplar, const BlockIndexOptions& options,
                             const RunContext& ctx = {});

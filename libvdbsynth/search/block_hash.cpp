@@ -11,6 +11,9 @@ namespace vdbsynth {
 namespace {
 
 constexpr int kGroup = kPositionGroup;
+// Side of the regions of positions hashed at once: a block's samples are read for a region, not for a group.
+constexpr int kRegion = 32;
+static_assert(kRegion % kGroup == 0);
 
 std::uint64_t mix(float value) {
     std::uint32_t bits = 0;
@@ -34,36 +37,42 @@ std::uint64_t constantHash(float value, int block) {
     return hash;
 }
 
-// Polynomial hash of every block of an n^3 region with side `block`: three passes of sums along one axis,
-// each weighing its terms by the powers of its own odd base. [m x m x m], m = n - block + 1.
-void hashRegion(const std::vector<float>& region, int n, int block, std::vector<std::uint64_t>& out) {
-    const int m = n - block + 1;
-    std::vector<std::uint64_t> in(region.size());
-    for (std::size_t i = 0; i < region.size(); ++i) in[i] = mix(region[i]);
-    int nx = n, ny = n, nz = n;
-    for (int pass = 0; pass < 3; ++pass) {
-        // Sums along z, then turns (x,y,z) to (z,x,y).
-        out.assign(std::size_t(m) * std::size_t(nx) * std::size_t(ny), 0);
-        for (int x = 0; x < nx; ++x)
-            for (int y = 0; y < ny; ++y)
-                for (int z = 0; z < m; ++z) {
-                    const std::uint64_t* row =
-                        in.data() + (std::size_t(x) * std::size_t(ny) + std::size_t(y)) * std::size_t(nz) +
-                        std::size_t(z);
-                    std::uint64_t sum = 0;
-                    for (int k = 0; k < block; ++k) sum = sum * kBase[pass] + row[k];
-                    out[(std::size_t(z) * std::size_t(nx) + std::size_t(x)) * std::size_t(ny) +
-                        std::size_t(y)] = sum;
-                }
-        std::swap(in, out);
-        nz = ny;
-        ny = nx;
-        nx = m;
+// Sums of `block` terms along one axis for every place, each term weighed by a power of the base: the next
+// sum is the last one without its first term and with one more. In place; `stride` from term to term, `width`
+// neighbours side by side.
+void rollSums(std::uint64_t* values, int length, int block, std::size_t stride, std::size_t width,
+              std::uint64_t base, std::vector<std::uint64_t>& scratch) {
+    std::uint64_t top = 1;
+    for (int k = 1; k < block; ++k) top *= base;
+    scratch.assign(width, 0);
+    std::uint64_t* sums = scratch.data();
+    for (int k = 0; k < block; ++k)
+        for (std::size_t i = 0; i < width; ++i)
+            sums[i] = sums[i] * base + values[std::size_t(k) * stride + i];
+    for (int place = 0; place + block <= length; ++place) {
+        std::uint64_t* first = values + std::size_t(place) * stride;
+        const std::uint64_t* next = place + block < length ? first + std::size_t(block) * stride : nullptr;
+        for (std::size_t i = 0; i < width; ++i) {
+            const std::uint64_t sum = sums[i], without = sum - first[i] * top;
+            first[i] = sum;
+            sums[i] = without * base + (next ? next[i] : 0);
+        }
     }
-    std::swap(in, out);
 }
 
-// Hashes one row of groups along z after the other.
+// Polynomial hash of every block of a region with side `block`, at its minimum corner: sums along z, y, x,
+// each with its own odd base.
+void hashRegion(const Index3& size, int block, std::vector<std::uint64_t>& values) {
+    const std::size_t nx = std::size_t(size.x), ny = std::size_t(size.y), nz = std::size_t(size.z);
+    std::vector<std::uint64_t> scratch;
+    for (std::size_t row = 0; row < nx * ny; ++row)
+        rollSums(values.data() + row * nz, size.z, block, 1, 1, kBase[0], scratch);
+    for (std::size_t x = 0; x < nx; ++x)
+        rollSums(values.data() + x * ny * nz, size.y, block, nz, nz, kBase[1], scratch);
+    rollSums(values.data(), size.x, block, ny * nz, ny * nz, kBase[2], scratch);
+}
+
+// Blocks of one value are hashed row by row of groups along z, as runs; all others region by region.
 class Hashing {
 public:
     Hashing(const BlockIndexData& data, const RunContext& ctx) : mData(data), mContext(ctx) {
@@ -87,13 +96,27 @@ public:
 
     // All eligible blocks.
     std::vector<Hashed> run() const {
-        const std::size_t rows = std::size_t(mGroups.x) * std::size_t(mGroups.y);
-        std::vector<std::vector<Hashed>> found(rows);
-        parallelFor(mContext, rows, 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t row = begin; row < end; ++row) hashRow(row, found[row]);
+        const Index3 size = mData.positions.size();
+        Index3 regions;
+        for (int axis = 0; axis < 3; ++axis) regions[axis] = (size[axis] + kRegion - 1) / kRegion;
+        const std::size_t rows = std::size_t(mGroups.x) * std::size_t(mGroups.y),
+                          count = std::size_t(regions.x) * std::size_t(regions.y) * std::size_t(regions.z);
+        std::vector<std::vector<Hashed>> found(rows + count);
+        parallelFor(mContext, rows, 4, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t row = begin; row < end; ++row) hashConstants(row, found[row]);
+        });
+        parallelFor(mContext, count, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t r = begin; r < end; ++r) {
+                const int z = int(r) % regions.z, y = int(r) / regions.z % regions.y,
+                          x = int(r) / regions.z / regions.y;
+                hashVaried(Index3{x, y, z} * kRegion, found[rows + r]);
+            }
         });
         std::vector<Hashed> all;
-        for (const auto& row : found) all.insert(all.end(), row.begin(), row.end());
+        for (auto& part : found) {
+            all.insert(all.end(), part.begin(), part.end());
+            std::vector<Hashed>().swap(part);
+        }
         return all;
     }
 
@@ -106,29 +129,48 @@ private:
         return mData.exemplar->constantIn(IndexBox::cube(at, mData.block + kGroup - 1), value);
     }
 
-    void hashRow(std::size_t row, std::vector<Hashed>& found) const {
-        const int n = mData.block + kGroup - 1;
-        std::vector<float> region(std::size_t(n) * std::size_t(n) * std::size_t(n));
-        std::vector<std::uint64_t> hashes;
+    void hashConstants(std::size_t row, std::vector<Hashed>& found) const {
         // Where in `found` the run of constant blocks of each row of positions is that may still grow.
         std::array<std::size_t, kGroup * kGroup> open;
         open.fill(kNone);
         for (int group = 0; group < mGroups.z; ++group) {
             const Index3 at = corner(row, group);
             float value = 0;
-            if (isConstant(at, value)) {
+            if (isConstant(at, value))
                 addConstant(at, constantHash(value, mData.block), open, found);
-                continue;
-            }
-            open.fill(kNone);
-            mData.exemplar->readBox(at, {n, n, n}, region.data());
-            hashRegion(region, n, mData.block, hashes);
-            for (int i = 0; i < kGroup * kGroup * kGroup; ++i) {
-                const Index3 p = at + Index3{i / (kGroup * kGroup), i / kGroup % kGroup, i % kGroup};
-                if (mData.positions.contains(p) && mData.eligible(p))
-                    found.push_back({hashes[std::size_t(i)], {mData.numberOf(p), 1}});
-            }
+            else
+                open.fill(kNone);
         }
+    }
+
+    // Blocks of those groups of a region that are not constant.
+    void hashVaried(const Index3& at, std::vector<Hashed>& found) const {
+        const IndexBox blocks = IndexBox::cube(at, kRegion).intersection(mData.positions);
+        std::vector<Index3> varied;
+        float value = 0;
+        for (int x = blocks.min.x; x <= blocks.max.x; x += kGroup)
+            for (int y = blocks.min.y; y <= blocks.max.y; y += kGroup)
+                for (int z = blocks.min.z; z <= blocks.max.z; z += kGroup)
+                    if (!isConstant({x, y, z}, value)) varied.push_back({x, y, z});
+        if (varied.empty()) return;
+        const int more = mData.block - 1;
+        const Index3 size = blocks.size() + Index3{more, more, more};
+        const std::size_t count = std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
+        std::vector<float> samples(count);
+        mData.exemplar->readBox(at, size, samples.data());
+        std::vector<std::uint64_t> hashes(count);
+        for (std::size_t i = 0; i < count; ++i) hashes[i] = mix(samples[i]);
+        hashRegion(size, mData.block, hashes);
+        for (const Index3& group : varied)
+            for (int i = 0; i < kGroup * kGroup * kGroup; ++i) {
+                const Index3 p = group + Index3{i / (kGroup * kGroup), i / kGroup % kGroup, i % kGroup};
+                if (!blocks.contains(p) || !mData.eligible(p)) continue;
+                const Index3 in = p - at;
+                const std::size_t place =
+                    (std::size_t(in.x) * std::size_t(size.y) + std::size_t(in.y)) * std::size_t(size.z) +
+                    std::size_t(in.z);
+                found.push_back({hashes[place], {mData.numberOf(p), 1}});
+            }
     }
 
     void addConstant(const Index3& at, std::uint64_t hash, std::array<std::size_t, kGroup * kGroup>& open,

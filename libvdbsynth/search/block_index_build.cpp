@@ -4,6 +4,7 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/base/parallel_sort.h"
 #include "libvdbsynth/grid/pyramid.h"
 #include "libvdbsynth/search/block_cost.h"
 #include "libvdbsynth/search/block_hash.h"
@@ -12,7 +13,6 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <tuple>
 #include <utility>
 
 namespace vdbsynth {
@@ -52,7 +52,7 @@ struct Member {
 // One node for each set of identical blocks: its first position, the others as members in order.
 void joinIdentical(const BlockIndexData& data, std::vector<Hashed>& all, std::vector<std::uint64_t>& firsts,
                    std::vector<Member>& members, const RunContext& ctx) {
-    std::sort(all.begin(), all.end(), [](const Hashed& a, const Hashed& b) {
+    parallelSort(ctx, all, [](const Hashed& a, const Hashed& b) {
         return a.hash != b.hash ? a.hash < b.hash : a.run.first < b.run.first;
     });
     std::vector<std::size_t> runs;
@@ -78,47 +78,94 @@ void joinIdentical(const BlockIndexData& data, std::vector<Hashed>& all, std::ve
         }
         if (rest.length > 0) members.push_back({node, rest});
     }
-    std::sort(members.begin(), members.end(), [](const Member& a, const Member& b) {
+    parallelSort(ctx, members, [](const Member& a, const Member& b) {
         return a.node != b.node ? a.node < b.node : a.run.first < b.run.first;
     });
 }
 
-void makeGroups(BlockIndexData& data, std::vector<std::uint64_t> firsts, const std::vector<Member>& members) {
-    const auto groupKey = [&](std::uint64_t number) {
-        const Index3 p = data.positionOf(number);
-        return data.numberOf({p.x / kGroup * kGroup, p.y / kGroup * kGroup, p.z / kGroup * kGroup});
+// Orders positions by cube, group, place in the group, all lexicographically.
+class NodeOrder {
+public:
+    explicit NodeOrder(const BlockIndexData& data) {
+        for (int axis = 0; axis < 3; ++axis)
+            mCubes[axis] = (data.positions.size()[axis] + kNodeCube - 1) / kNodeCube;
+    }
+    std::uint64_t key(const Index3& p) const {
+        const std::uint64_t cube =
+            (std::uint64_t(p.x / kNodeCube) * std::uint64_t(mCubes.y) + std::uint64_t(p.y / kNodeCube)) *
+                std::uint64_t(mCubes.z) +
+            std::uint64_t(p.z / kNodeCube);
+        const Index3 g{p.x / kGroup % 2, p.y / kGroup % 2, p.z / kGroup % 2},
+            in{p.x % kGroup, p.y % kGroup, p.z % kGroup};
+        return (cube * 8 + std::uint64_t(g.x * 4 + g.y * 2 + g.z)) * kInGroup +
+               std::uint64_t((in.x * kGroup + in.y) * kGroup + in.z);
+    }
+    Index3 position(std::uint64_t key) const {
+        const int in = int(key % kInGroup), g = int(key / kInGroup % 8);
+        const std::uint64_t cube = key / kInGroup / 8;
+        const Index3 at{int(cube / std::uint64_t(mCubes.z) / std::uint64_t(mCubes.y)),
+                        int(cube / std::uint64_t(mCubes.z) % std::uint64_t(mCubes.y)),
+                        int(cube % std::uint64_t(mCubes.z))};
+        return at * kNodeCube + Index3{g / 4, g / 2 % 2, g % 2} * kGroup +
+               Index3{in / kGroup / kGroup, in / kGroup % kGroup, in % kGroup};
+    }
+    static std::uint64_t group(std::uint64_t key) { return key / kInGroup; }
+
+private:
+    static_assert(kNodeCube == 2 * kGroup);
+    static constexpr std::uint64_t kInGroup = kGroup * kGroup * kGroup;
+    Index3 mCubes;
+};
+
+// Nodes in their order, and where one group ends and the next begins.
+void orderNodes(BlockIndexData& data, std::vector<std::uint64_t> firsts, const RunContext& ctx) {
+    const NodeOrder order(data);
+    const auto each = [&](auto&& work) {
+        parallelFor(ctx, firsts.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) work(i);
+        });
     };
-    const auto cubeKey = [&](std::uint64_t number) {
-        const Index3 p = data.positionOf(number);
-        return data.numberOf(
-            {p.x / kNodeCube * kNodeCube, p.y / kNodeCube * kNodeCube, p.z / kNodeCube * kNodeCube});
-    };
-    std::sort(firsts.begin(), firsts.end(), [&](std::uint64_t a, std::uint64_t b) {
-        return std::make_tuple(cubeKey(a), groupKey(a), a) < std::make_tuple(cubeKey(b), groupKey(b), b);
+    each([&](std::size_t i) { firsts[i] = order.key(data.positionOf(firsts[i])); });
+    parallelSort(ctx, firsts);
+    for (std::uint32_t node = 0; node < firsts.size(); ++node)
+        if (node == 0 || order.group(firsts[node]) != order.group(firsts[node - 1])) {
+            if (node > 0) data.groups.back().last = node;
+            data.groups.emplace_back().first = node;
+        }
+    data.groups.back().last = std::uint32_t(firsts.size());
+    data.places.resize(firsts.size());
+    data.nodes.resize(firsts.size());
+    each([&](std::size_t i) {
+        const Index3 p = order.position(firsts[i]);
+        data.places[i] = std::uint16_t(placeInCube(p));
+        data.nodes[i] = data.numberOf(p);
     });
-    data.nodes = std::move(firsts);
-    data.places.resize(data.nodes.size());
+}
+
+void orderMembers(BlockIndexData& data, const std::vector<Member>& members) {
     data.memberBegin.assign(data.nodes.size() + 1, 0);
-    const int half = data.cells.front();
+    if (members.empty()) return;
+    data.members.reserve(members.size());
     for (std::uint32_t node = 0; node < data.nodes.size(); ++node) {
         data.memberBegin[node] = std::uint32_t(data.members.size());
         const std::uint64_t key = data.nodes[node];
         auto member = std::partition_point(members.begin(), members.end(),
                                            [key](const Member& m) { return m.node < key; });
         for (; member != members.end() && member->node == key; ++member) data.members.push_back(member->run);
+    }
+    data.memberBegin[data.nodes.size()] = std::uint32_t(data.members.size());
+}
+
+// Box of a group's nodes and the ranges of their means.
+void boundGroup(const BlockIndexData& data, BlockGroup& group) {
+    const int half = data.cells.front();
+    group.low.fill(std::numeric_limits<float>::infinity());
+    group.high.fill(-std::numeric_limits<float>::infinity());
+    const Index3 first = data.position(group.first);
+    group.box = {first, first};
+    for (std::uint32_t node = group.first; node < group.last; ++node) {
         const Index3 p = data.position(node);
-        data.places[node] = std::uint16_t(placeInCube(p));
-        if (node == 0 || groupKey(data.nodes[node]) != groupKey(data.nodes[node - 1])) {
-            BlockGroup group;
-            group.box = {p, p};
-            group.first = node;
-            group.low.fill(std::numeric_limits<float>::infinity());
-            group.high.fill(-std::numeric_limits<float>::infinity());
-            data.groups.push_back(group);
-        }
-        BlockGroup& group = data.groups.back();
-        group.last = node + 1;
-        group.shared = group.shared || data.members.size() > data.memberBegin[node];
+        group.shared = group.shared || data.isShared(node);
         for (int axis = 0; axis < 3; ++axis) {
             group.box.min[axis] = std::min(group.box.min[axis], p[axis]);
             group.box.max[axis] = std::max(group.box.max[axis], p[axis]);
@@ -130,7 +177,15 @@ void makeGroups(BlockIndexData& data, std::vector<std::uint64_t> firsts, const s
             group.high[c] = std::max(group.high[c], mean);
         }
     }
-    data.memberBegin[data.nodes.size()] = std::uint32_t(data.members.size());
+}
+
+void makeGroups(BlockIndexData& data, std::vector<std::uint64_t> firsts, const std::vector<Member>& members,
+                const RunContext& ctx) {
+    orderNodes(data, std::move(firsts), ctx);
+    orderMembers(data, members);
+    parallelFor(ctx, data.groups.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t g = begin; g < end; ++g) boundGroup(data, data.groups[g]);
+    });
 }
 
 }  // namespace
@@ -221,7 +276,7 @@ BlockIndexData buildBlockIndexData(std::shared_ptr<const BrickField> exemplar,
     std::vector<std::uint64_t> firsts;
     std::vector<Member> members;
     joinIdentical(data, all, firsts, members, ctx);
-    makeGroups(data, std::move(firsts), members);
+    makeGroups(data, std::move(firsts), members, ctx);
     return data;
 }
 

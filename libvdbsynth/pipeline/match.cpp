@@ -17,6 +17,18 @@ CutFaces facesOf(const LevelSet& model) {
     return model.domainRecorded ? kAllCut : CutFaces{};
 }
 
+void judge(const std::vector<BlockMatch>& exact, MatchResult& result) {
+    double ratios = 0, found = 0;
+    for (std::size_t k = 0; k < exact.size(); ++k) {
+        const double a = std::sqrt(result.matches[k].cost), b = std::sqrt(exact[k].cost);
+        ratios += a == b ? 1 : a / b;
+        found += std::any_of(result.matches.begin(), result.matches.end(),
+                             [&](const BlockMatch& m) { return m.position == exact[k].position; });
+    }
+    result.exactnessRatio = ratios / double(exact.size());
+    result.recall = found / double(exact.size());
+}
+
 }  // namespace
 
 MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const MatchOptions& options,
@@ -72,10 +84,15 @@ MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const Ma
                     "--mask: not active anywhere in the query's block, so there is nothing to compare");
     BlockIndexOptions indexOptions;
     indexOptions.block = options.block;
+    indexOptions.cacheFolder = options.indexFolder;
     Stage stage(ctx, "matching", 2);
     const BlockIndex index = BlockIndex::build(field, indexOptions, ctx);
     stage.advance();
-    result.matches = index.match(blockQuery, options.count, &result.counts);
+    BlockSearchOptions search;
+    search.count = options.count;
+    search.tolerance = options.tolerance;
+    result.matches = index.match(blockQuery, search, &result.counts);
+    if (options.check && options.tolerance > 0) judge(index.match(blockQuery, options.count), result);
     stage.advance();
     for (BlockMatch& match : result.matches) match.position = match.position + exemplar.domain.min;
     return result;

@@ -3,26 +3,34 @@
 #include "libvdbsynth/search/block_index.h"
 #include "libvdbsynth/vdb/level_set.h"
 
+#include <string>
 #include <vector>
 
 namespace vdbsynth {
 
 struct MatchOptions {
-    int block = 16;  ///< N [voxels], 4..256
-    Index3 at;       ///< minimum corner of the block to look for, in the query's index space
-    int count = 1;   ///< K, 1..100000
-    GridPtr mask;    ///< only samples where it is active count, in the query's index space; null: all
+    int block = 16;           ///< N [voxels], 4..256
+    Index3 at;                ///< minimum corner of the block to look for, in the query's index space
+    int count = 1;            ///< K, 1..100000
+    double tolerance = 0;     ///< BlockSearchOptions::tolerance; 0: exact
+    bool check = false;       ///< with a tolerance: the exact matches too, for MatchResult's ratio and recall
+    std::string indexFolder;  ///< BlockIndexOptions::cacheFolder; empty: none
+    GridPtr mask;  ///< only samples where it is active count, in the query's index space; null: all
 };
 
 struct MatchResult {
     std::vector<BlockMatch> matches;  ///< positions in the exemplar's index space, best first
     BlockSearchCounts counts;
     std::size_t known = 0;  ///< samples of the query that counted
+    /// With `check`: root-mean-square difference of the k-th match over that of the k-th exact one, mean over
+    /// k (1 where both are 0), and the share of the exact matches that were found.
+    double exactnessRatio = 1, recall = 1;
 };
 
 /// The blocks of an exemplar's domain most like one of the query's, exact; distances are compared in voxels,
-/// clamped to max(8, N/2).
-/// @throw Error InvalidOption, Unusable (block larger than the domain, no known sample), Memory, Cancelled
+/// clamped to max(8, N/2). With a tolerance: at most (1 + tolerance) times as different.
+/// @throw Error InvalidOption, Unusable (block larger than the domain, no known sample), Memory, Io
+/// (indexFolder), Cancelled
 /// @par Repeats same bits for any number of threads
 MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const MatchOptions& options,
                        const RunContext& ctx = {});

@@ -205,6 +205,7 @@ SynthPlan planSynthesis(const LevelSets& exemplars, const SynthOptions& options)
     plan.block.levels = options.levels;
     plan.block.longestRun = options.longestRun;
     plan.block.drift = options.drift;
+    plan.block.indexFolder = options.indexFolder;
     plan.block.paper = options.method == SynthesisMethod::Paper;
     addExemplars(exemplars, options, plan);
     std::vector<Index3> sizes;

@@ -1,6 +1,7 @@
 #include "libvdbsynth/search/block_index_data.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/search/block_bound.h"
 #include "libvdbsynth/search/block_cost.h"
 
@@ -8,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <string>
 
 namespace vdbsynth {
@@ -42,10 +44,13 @@ private:
     std::vector<BlockMatch> mMatches;
 };
 
-// A node that may still be the best match.
+// A node that may still be the best match. Made in place: a pair that is copied right after its halves were
+// written stalls, which was a twelfth of a search.
 struct Survivor {
-    float bound;
-    std::uint32_t node;
+    Survivor() = default;
+    Survivor(float b, std::uint32_t n) : bound(b), node(n) {}
+    float bound = 0;
+    std::uint32_t node = 0;
 };
 
 // Survivors of one cube, at [begin, end) of all of them; at first they are groups.
@@ -54,13 +59,34 @@ struct SurvivingCube {
     std::size_t begin, end;
 };
 
+// What a search writes to while it runs; kept for the next one, since getting megabytes from the system for
+// every query costs a tenth of it.
+struct Scratch {
+    CubeBounds cube;
+    std::vector<std::pair<float, std::uint32_t>> groups;  // bounds and numbers
+    std::vector<Survivor> nodes, survivors, before;
+    void clear() {
+        groups.clear();
+        nodes.clear();
+        survivors.clear();
+        before.clear();
+    }
+};
+
 class Search {
 public:
-    Search(const BlockIndexData& data, const BlockQuery& query, int count, BlockSearchCounts& counts)
+    Search(const BlockIndexData& data, const BlockQuery& query, const BlockSearchOptions& options,
+           BlockSearchCounts& counts, Scratch& scratch)
         : mData(data),
           mQuery(query),
           mCounts(counts),
-          mBest(count),
+          mCube(scratch.cube),
+          mGroups(scratch.groups),
+          mNodes(scratch.nodes),
+          mSurvivors(scratch.survivors),
+          mBefore(scratch.before),
+          mBest(options.count),
+          mSlack(1 / ((1 + options.tolerance) * (1 + options.tolerance))),
           mKnown(countKnown(query.known, data.block)) {
         mCandidates =
             query.candidates.empty() ? data.positions : query.candidates.intersection(data.positions);
@@ -90,6 +116,9 @@ public:
     }
 
 private:
+    // Exact: a bound equal to the limit is still followed, the tie goes by position.
+    double pruneAbove() const { return mBest.limit() * mSlack; }
+
     double cost(const Index3& position) {
         ++mCounts.exact;
         return blockCost(*mData.exemplar, position, mData.block, mQuery.samples, mQuery.known, mKnown,
@@ -108,7 +137,7 @@ private:
         std::vector<SurvivingCube> all = boundGroups(level, bounds), opened;
         probe(all, bounds);
         for (SurvivingCube& cube : all) {
-            if (double(cube.least) > mBest.limit()) break;
+            if (double(cube.least) > pruneAbove()) break;
             gather(cube);
             boundNodes(bounds, mData.means.front(), kFewNodes, cube);
             if (cube.begin != cube.end) opened.push_back(cube);
@@ -126,7 +155,7 @@ private:
             mean[cell] = level.mean[i];
             known[cell] = 1;
         }
-        const float limit = bounds.squaresFor(mBest.limit());
+        const float limit = bounds.squaresFor(pruneAbove());
         Index3 last{-1, -1, -1};
         for (std::uint32_t g = 0; g < mData.groups.size(); ++g) {
             const BlockGroup& group = mData.groups[g];
@@ -137,7 +166,7 @@ private:
             const Index3 corner = cubeCorner(group.box.min);
             if (!(corner == last)) cubes.push_back({bound, mGroups.size(), 0});
             last = corner;
-            mGroups.push_back({bound, g});
+            mGroups.emplace_back(bound, g);
             cubes.back().least = std::min(cubes.back().least, bound);
             cubes.back().end = mGroups.size();
         }
@@ -169,12 +198,12 @@ private:
         mNodes.clear();
         for (std::size_t i = cube.begin; i < cube.end; ++i) {
             const auto& [bound, group] = mGroups[i];
-            if (double(bound) > mBest.limit()) continue;
+            if (double(bound) > pruneAbove()) continue;
             ++mCounts.groups;
             const BlockGroup& of = mData.groups[group];
             for (std::uint32_t node = of.first; node < of.last; ++node)
                 if (!mRestricted || mData.isShared(node) || mCandidates.contains(mData.position(node)))
-                    mNodes.push_back({bound, node});
+                    mNodes.emplace_back(bound, node);
         }
     }
 
@@ -183,8 +212,9 @@ private:
                                const std::array<float, 8>& known) {
         float squares[8], sum = 0;
         for (std::size_t k = 0; k < 8; ++k) {
-            const float beyond = std::max(group.low[k] - mean[k], mean[k] - group.high[k]) * known[k];
-            squares[k] = beyond > 0 ? beyond * beyond : 0.f;
+            const float outside = std::max(group.low[k] - mean[k], mean[k] - group.high[k]);
+            const float beyond = std::max(outside, 0.f) * known[k];
+            squares[k] = beyond * beyond;
         }
         for (float square : squares) sum += square;
         return sum;
@@ -194,13 +224,13 @@ private:
     void boundNodes(const LevelBound& level, const LevelField& field, std::size_t few, SurvivingCube& cube) {
         cube.begin = mSurvivors.size();
         cube.least = std::numeric_limits<float>::infinity();
-        const float limit = level.squaresFor(mBest.limit());
+        const float limit = level.squaresFor(pruneAbove());
         mCounts.nodes += mNodes.size();
         Survivor best{std::numeric_limits<float>::infinity(), 0};
         const auto keep = [&](const Survivor& node, float squares) {
             if (squares > limit) return;
             const float bound = std::max(node.bound, level.from(squares));
-            mSurvivors.push_back({bound, node.node});
+            mSurvivors.emplace_back(bound, node.node);
             if (bound < best.bound) best = mSurvivors.back();
         };
         if (mNodes.size() > few) {
@@ -224,16 +254,16 @@ private:
                                       std::size_t few) {
         const QueryLevel level = queryLevel(mQuery, mData.block, cell, mKnown);
         const LevelBound bounds(level, mMargin);
-        const std::vector<Survivor> before = std::move(mSurvivors);
+        std::swap(mBefore, mSurvivors);
         mSurvivors.clear();
         mLeast = std::numeric_limits<float>::infinity();
         sortCubes(cubes);
         std::vector<SurvivingCube> left;
         for (SurvivingCube& cube : cubes) {
-            if (double(cube.least) > mBest.limit()) break;
+            if (double(cube.least) > pruneAbove()) break;
             mNodes.clear();
             for (std::size_t i = cube.begin; i < cube.end; ++i)
-                if (double(before[i].bound) <= mBest.limit()) mNodes.push_back(before[i]);
+                if (double(mBefore[i].bound) <= pruneAbove()) mNodes.push_back(mBefore[i]);
             if (cell < mData.block / 4 && mNodes.size() <= few) {
                 cube.begin = mSurvivors.size();
                 mSurvivors.insert(mSurvivors.end(), mNodes.begin(), mNodes.end());
@@ -249,7 +279,7 @@ private:
     void compareSurvivors() {
         std::sort(mSurvivors.begin(), mSurvivors.end(), lessBound);
         for (const Survivor& survivor : mSurvivors) {
-            if (double(survivor.bound) > mBest.limit()) break;
+            if (double(survivor.bound) > pruneAbove()) break;
             evaluate(survivor.node);
         }
     }
@@ -280,21 +310,37 @@ private:
     const BlockIndexData& mData;
     const BlockQuery& mQuery;
     BlockSearchCounts& mCounts;
+    CubeBounds& mCube;
+    std::vector<std::pair<float, std::uint32_t>>& mGroups;
+    std::vector<Survivor>&mNodes, &mSurvivors, &mBefore;
     Best mBest;
+    double mSlack;  // a bound is worth following up to this share of the limit
     std::int64_t mKnown;
     IndexBox mCandidates;
     bool mRestricted = false;
     float mMargin = 0;
     float mLeast = std::numeric_limits<float>::infinity();
-    CubeBounds mCube;
-    std::vector<std::pair<float, std::uint32_t>> mGroups;  // bounds and numbers
-    std::vector<Survivor> mNodes, mSurvivors;
 };
 
 }  // namespace
 
 struct BlockIndex::Impl {
     BlockIndexData data;
+    std::mutex mutex;
+    std::vector<std::unique_ptr<Scratch>> idle;  // one for every call that ran at the same time
+
+    std::unique_ptr<Scratch> takeScratch() {
+        const std::lock_guard<std::mutex> lock(mutex);
+        if (idle.empty()) return std::make_unique<Scratch>();
+        std::unique_ptr<Scratch> scratch = std::move(idle.back());
+        idle.pop_back();
+        return scratch;
+    }
+    void giveBack(std::unique_ptr<Scratch> scratch) {
+        scratch->clear();
+        const std::lock_guard<std::mutex> lock(mutex);
+        idle.push_back(std::move(scratch));
+    }
 };
 
 BlockIndex::BlockIndex(std::unique_ptr<Impl> impl) : mImpl(std::move(impl)) {}
@@ -309,11 +355,48 @@ BlockIndex BlockIndex::build(std::shared_ptr<const BrickField> exemplar, const B
     return BlockIndex(std::move(impl));
 }
 
+std::vector<BlockMatch> BlockIndex::match(const BlockQuery& query, const BlockSearchOptions& options,
+                                          BlockSearchCounts* counts) const {
+    requireOption(options.count >= 1, "count", std::to_string(options.count), "at least 1");
+    requireOption(options.tolerance >= 0 && options.tolerance <= 100, "tolerance",
+                  std::to_string(options.tolerance), "from 0 to 100");
+    BlockSearchCounts ignored;
+    std::unique_ptr<Scratch> scratch = mImpl->takeScratch();
+    std::vector<BlockMatch> found =
+        Search(mImpl->data, query, options, counts ? *counts : ignored, *scratch).run();
+    mImpl->giveBack(std::move(scratch));
+    return found;
+}
+
 std::vector<BlockMatch> BlockIndex::match(const BlockQuery& query, int count,
                                           BlockSearchCounts* counts) const {
-    requireOption(count >= 1, "count", std::to_string(count), "at least 1");
-    BlockSearchCounts ignored;
-    return Search(mImpl->data, query, count, counts ? *counts : ignored).run();
+    BlockSearchOptions options;
+    options.count = count;
+    return match(query, options, counts);
+}
+
+std::vector<std::vector<BlockMatch>> BlockIndex::matchAll(const std::vector<BlockQuery>& queries,
+                                                          const BlockSearchOptions& options,
+                                                          const RunContext& ctx,
+                                                          BlockSearchCounts* counts) const {
+    constexpr std::size_t kTogether = 8;
+    std::vector<std::vector<BlockMatch>> found(queries.size());
+    std::vector<BlockSearchCounts> done((queries.size() + kTogether - 1) / kTogether);
+    parallelFor(ctx, queries.size(), kTogether, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            BlockQuery query = queries[i];
+            if (i > begin)
+                for (const BlockMatch& match : found[i - 1]) query.hints.push_back(match.position);
+            found[i] = match(query, options, &done[begin / kTogether]);
+        }
+    });
+    for (const BlockSearchCounts& part : done)
+        if (counts) {
+            counts->groups += part.groups;
+            counts->nodes += part.nodes;
+            counts->exact += part.exact;
+        }
+    return found;
 }
 
 int BlockIndex::block() const {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace vdbsynth {
@@ -22,6 +23,14 @@ struct BlockMatch {
     double cost = 0;  ///< blockCost
 };
 
+struct BlockSearchOptions {
+    int count = 1;  ///< how many matches, at least 1
+    /// 0: exact. Above: what a search may settle for. Everything whose lower bound exceeds the cost found so
+    /// far divided by (1 + tolerance)^2 is left out, so that the k-th answer's root-mean-square difference is
+    /// at most (1 + tolerance) times that of the k-th best block. 0..100
+    double tolerance = 0;
+};
+
 /// What a search did, summed over calls by the caller.
 struct BlockSearchCounts {
     std::uint64_t groups = 0;  ///< groups of positions opened
@@ -33,6 +42,9 @@ struct BlockIndexOptions {
     int block = 16;                    ///< N, side of the blocks [voxels], 4..256
     const BrickField* mask = nullptr;  ///< a block counts only if the mask is 1 in all of it; null: all
                                        ///< blocks; same box as the exemplar
+    /// An existing folder where indices are kept by content hash and read from the next time; empty: none. A
+    /// damaged file is made again, with a warning.
+    std::string cacheFolder;
 };
 
 /// Exact best-match search over all blocks of a sparse field: the search tree of [lagae2004, section 4].
@@ -53,7 +65,7 @@ class BlockIndex {
 public:
     /// @param exemplar  box begins at 0; kept alive and shared
     /// @throw Error InvalidOption (--block out of range), Unusable (block larger than the exemplar, no
-    ///              block inside the mask), Memory (by ctx.maxMemory), Cancelled
+    ///              block inside the mask), Memory (by ctx.maxMemory), Io (cacheFolder), Cancelled
     /// @par Cost    time O(positions whose blocks are not constant * N), memory 14 bytes each of those and 4
     ///              for each of their means and once more; constant blocks cost 16 bytes a run along z
     /// @par Repeats same bits for any number of threads
@@ -70,6 +82,22 @@ public:
     /// @par Repeats yes; the answer equals matchBlocksLinearly's
     std::vector<BlockMatch> match(const BlockQuery& query, int count = 1,
                                   BlockSearchCounts* counts = nullptr) const;
+
+    /// The same with options: within a tolerance where one is asked for.
+    /// @throw Error InvalidOption (an option out of its range)
+    /// @par Repeats yes: hints too change nothing while tolerance is 0; above it they may
+    std::vector<BlockMatch> match(const BlockQuery& query, const BlockSearchOptions& options,
+                                  BlockSearchCounts* counts = nullptr) const;
+
+    /// match for every query, on all of the context's threads. Queries in a row share what they work with and
+    /// give the next one their answers as hints, so keep those together that ask for similar things.
+    /// @return answers in the order of the queries
+    /// @throw Error InvalidOption, Cancelled
+    /// @par Repeats same bits for any number of threads
+    std::vector<std::vector<BlockMatch>> matchAll(const std::vector<BlockQuery>& queries,
+                                                  const BlockSearchOptions& options = {},
+                                                  const RunContext& ctx = {},
+                                                  BlockSearchCounts* counts = nullptr) const;
 
     int block() const;
     const BrickField& exemplar() const;

@@ -8,6 +8,7 @@
 #include "libvdbsynth/grid/pyramid.h"
 #include "libvdbsynth/search/block_cost.h"
 #include "libvdbsynth/search/block_hash.h"
+#include "libvdbsynth/search/block_index_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -232,6 +233,31 @@ void makeDense(LevelField& field, const RunContext& ctx) {
     field.bricks.reset();
 }
 
+// A kept index that is damaged is made anew, and the user told.
+bool readKept(const std::string& path, BlockIndexData& data, const RunContext& ctx) {
+    try {
+        const bool found = readBlockIndex(path, data);
+        message(ctx, MessageLevel::Detail,
+                found ? "index read from " + path : "index will be kept as " + path);
+        return found;
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::BadData) throw;
+        message(ctx, MessageLevel::Warning, std::string(error.what()) + "; it is made again");
+        return false;
+    }
+}
+
+void makeNodes(BlockIndexData& data, const RunContext& ctx) {
+    std::vector<Hashed> all = hashBlocks(data, ctx);
+    if (all.empty())
+        throw Error(ErrorCode::Unusable, "--exemplar-mask: no block of " + std::to_string(data.block) +
+                                             " voxels fits inside the mask; use a smaller --block");
+    std::vector<std::uint64_t> firsts;
+    std::vector<Member> members;
+    joinIdentical(data, all, firsts, members, ctx);
+    makeGroups(data, std::move(firsts), members, ctx);
+}
+
 }  // namespace
 
 BlockIndexData buildBlockIndexData(std::shared_ptr<const BrickField> exemplar,
@@ -269,14 +295,13 @@ BlockIndexData buildBlockIndexData(std::shared_ptr<const BrickField> exemplar,
         double(varied) * kPositionGroup * kPositionGroup * kPositionGroup > 0.7 * double(box.volume());
     for (LevelField& field : data.means)
         if (dense) makeDense(field, ctx);
-    std::vector<Hashed> all = hashBlocks(data, ctx);
-    if (all.empty())
-        throw Error(ErrorCode::Unusable, "--exemplar-mask: no block of " + std::to_string(options.block) +
-                                             " voxels fits inside the mask; use a smaller --block");
-    std::vector<std::uint64_t> firsts;
-    std::vector<Member> members;
-    joinIdentical(data, all, firsts, members, ctx);
-    makeGroups(data, std::move(firsts), members, ctx);
+    const std::string kept = options.cacheFolder.empty()
+                                 ? ""
+                                 : options.cacheFolder + "/" +
+                                       blockIndexFileName(*data.exemplar, options.mask, options.block, ctx);
+    if (!kept.empty() && readKept(kept, data, ctx)) return data;
+    makeNodes(data, ctx);
+    if (!kept.empty()) writeBlockIndex(kept, data);
     return data;
 }
 

@@ -46,6 +46,7 @@ public:
              const std::string& name) {
         BlockIndexOptions indexOptions;
         indexOptions.block = pass.block;
+        indexOptions.cacheFolder = mOptions.indexFolder;
         Stage stage(mContext, name, 1);
         std::vector<BlockIndex> indices;
         for (const auto& exemplar : pass.exemplars) {

@@ -242,3 +242,65 @@ TEST_CASE("BlockIndex: a mostly empty field costs what its surface costs", "[sea
     CHECK(thrown.code == int(ErrorCode::Memory));
     CHECK(test::contains(thrown.message, "--exemplar-box"));
 }
+
+TEST_CASE("BlockIndex: within a tolerance, no answer is further off than promised", "[search][property]") {
+    for (const Case& c : exemplars()) {
+        const auto field = std::make_shared<const BrickField>(c.field);
+        BlockIndexOptions options;
+        options.block = 8;
+        const BlockIndex index = BlockIndex::build(field, options);
+        for (double tolerance : {0.05, 0.5, 2.0})
+            for (std::uint64_t seed = 0; seed < 8; ++seed) {
+                INFO(c.name << ", tolerance " << tolerance << ", seed " << seed);
+                const std::vector<float> samples = querySamples(c.field, 8, seed * 13 + 3);
+                BlockQuery query;
+                query.samples = samples.data();
+                BlockSearchOptions search;
+                search.count = 3;
+                search.tolerance = tolerance;
+                const auto exact = index.match(query, 3);
+                const auto found = index.match(query, search);
+                REQUIRE(found.size() == exact.size());
+                for (std::size_t k = 0; k < exact.size(); ++k)
+                    CHECK(std::sqrt(found[k].cost) <=
+                          (1 + tolerance) * std::sqrt(exact[k].cost) * (1 + 1e-6));
+            }
+    }
+    const auto field = std::make_shared<const BrickField>(test::noiseField({18, 16, 20}, 1));
+    BlockIndexOptions options;
+    options.block = 8;
+    const BlockIndex index = BlockIndex::build(field, options);
+    BlockSearchOptions search;
+    search.tolerance = -0.1;
+    CHECK(test::thrownBy([&] { index.match(BlockQuery{}, search); }).code == int(ErrorCode::InvalidOption));
+}
+
+TEST_CASE("BlockIndex: many queries at once get the answers of each alone, for any threads",
+          "[search][tsan]") {
+    const BrickField source = test::ballsField({40, 32, 36}, 3, 3.f, 2);
+    const auto field = std::make_shared<const BrickField>(source);
+    BlockIndexOptions options;
+    options.block = 8;
+    const BlockIndex index = BlockIndex::build(field, options);
+    std::vector<std::vector<float>> samples;
+    for (std::uint64_t seed = 0; seed < 30; ++seed) samples.push_back(querySamples(source, 8, seed));
+    std::vector<BlockQuery> queries(samples.size());
+    for (std::size_t i = 0; i < queries.size(); ++i) queries[i].samples = samples[i].data();
+    BlockSearchOptions search;
+    search.count = 2;
+    for (int threads : {1, 2, 5}) {
+        RunContext ctx;
+        ctx.threads = threads;
+        BlockSearchCounts counts;
+        const auto found = index.matchAll(queries, search, ctx, &counts);
+        REQUIRE(found.size() == queries.size());
+        CHECK(counts.exact > 0);
+        for (std::size_t i = 0; i < queries.size(); ++i) requireSame(found[i], index.match(queries[i], 2));
+    }
+    CHECK(index.matchAll({}).empty());
+    std::atomic<bool> stop{true};
+    RunContext stopped;
+    stopped.cancel = &stop;
+    CHECK(test::thrownBy([&] { index.matchAll(queries, search, stopped); }).code ==
+          int(ErrorCode::Cancelled));
+}

@@ -9,7 +9,7 @@ import sys
 BELOW = {}
 for room, direct in [
     ("base", []), ("math", ["base"]), ("geometry", ["math"]), ("grid", ["geometry"]),
-    ("io", ["geometry", "grid"]), ("vdb", ["io"]), ("procedural", ["grid"]), ("search", ["grid"]),
+    ("io", ["geometry", "grid"]), ("vdb", ["io"]), ("procedural", ["grid"]), ("search", ["grid", "io"]),
     ("synth", ["search", "grid"]), ("measure", ["synth"]), ("pipeline", ["measure", "synth", "procedural", "vdb", "io"]), ("tools", ["pipeline"]),
 ]:
     BELOW[room] = {room}.union(*[BELOW[d] for d in direct]) if direct else {room}

@@ -1,4 +1,5 @@
 #include "tools/vdb_synth/command.h"
+#include "tools/vdb_synth/index_option.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
@@ -11,11 +12,27 @@
 namespace vdbsynth::cli {
 namespace {
 
+// What --tolerance promises and what --check found.
+std::string checked(const MatchOptions& options, const MatchResult& result) {
+    if (options.tolerance == 0) return "";
+    const auto line = [](const char* name, double value) {
+        return ",\n  \"" + std::string(name) + "\": " + nlohmann::json(value).dump();
+    };
+    return line("tolerance", options.tolerance) +
+           (options.check ? line("exactness_ratio", result.exactnessRatio) + line("recall", result.recall)
+                          : "");
+}
+
 void match(Run& run) {
     run.requireInputs(2, 2);
     MatchOptions options;
     options.block = run.arguments.whole("block", 16, 4, 256);
     options.count = run.arguments.whole("count", 1, 1, 100000);
+    options.tolerance = run.arguments.real("tolerance", 0, 0, 100);
+    options.check = run.arguments.has("check");
+    if (options.check && !run.arguments.has("tolerance"))
+        throw Error(ErrorCode::InvalidOption, "--check: needs --tolerance; without it matches are exact");
+    options.indexFolder = indexFolder(run.arguments);
     if (!run.arguments.has("at"))
         throw Error(ErrorCode::InvalidOption,
                     "--at: missing; give the minimum corner of the block in the query's index space, for "
@@ -46,7 +63,8 @@ void match(Run& run) {
     // One match a line: thousands are easier to read and to split.
     std::string text = "{\n  \"block\": " + std::to_string(options.block) +
                        ",\n  \"at\": " + nlohmann::json{options.at.x, options.at.y, options.at.z}.dump() +
-                       ",\n  \"known_samples\": " + std::to_string(result.known) + ",\n  \"matches\": [";
+                       ",\n  \"known_samples\": " + std::to_string(result.known) + checked(options, result) +
+                       ",\n  \"matches\": [";
     for (std::size_t i = 0; i < matches.size(); ++i) text += (i ? ",\n    " : "\n    ") + matches[i].dump();
     printLine(text + "\n  ]\n}");
     run.count("bounds_computed", result.counts.nodes);
@@ -64,6 +82,10 @@ const Command kMatch{
     {{"block", "N", "side of the block (voxels), 4 to 256, default 16"},
      {"at", "I,J,K", "minimum corner of the block in QUERY's index space (voxels)"},
      {"count", "K", "how many matches, default 1"},
+     {"tolerance", "E",
+      "settle for matches whose difference is at most 1 + E times the least; default 0, exact"},
+     {"check", "", "with --tolerance: also search exactly, and say how close the matches are (slower)"},
+     indexCacheOption(),
      {"mask", "FILE.vdb", "only samples where this grid is active count, in QUERY's index space"},
      {"json", "", "print JSON (the default and only form)"}},
     match};

@@ -1,5 +1,6 @@
 #include "tools/vdb_synth/carry_options.h"
 #include "tools/vdb_synth/command.h"
+#include "tools/vdb_synth/index_option.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
@@ -89,6 +90,7 @@ SynthOptions parseOptions(const Arguments& arguments) {
     options.draft = arguments.has("draft");
     options.carried = carriedValues(arguments);
     options.method = parseMethod(arguments);
+    options.indexFolder = indexFolder(arguments);
     options.longestRun = arguments.real("longest-run", 0.4, 0.01, 1);
     if (arguments.has("longest-run") && (options.draft || options.method != SynthesisMethod::Default))
         throw Error(ErrorCode::InvalidOption, "--longest-run: needs --method default and no --draft");
@@ -324,6 +326,7 @@ const Command kSynth{
       "also write the source map, for repeat (of a filled hole only what was copied from where); without "
       "FILE into the .vdb output",
       false, 0, ".vdb"},
+     indexCacheOption(),
      carryOptions()[0],
      carryOptions()[1],
      {"adaptivity", "A", "0 to 1: merge flat parts of a mesh output, default 0"}},

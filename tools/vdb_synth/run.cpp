@@ -42,9 +42,9 @@ std::uint64_t presentMemory() {
 
 // Options that change how a run goes, not what it makes.
 const std::set<std::string>& incidental() {
-    static const std::set<std::string> names{"threads",       "progress", "report",     "config",
-                                             "quiet",         "verbose",  "max-memory", "output",
-                                             "no-supervisor", "seed",     "source-map"};
+    static const std::set<std::string> names{"threads",     "progress",      "report",  "config",
+                                             "index-cache", "quiet",         "verbose", "max-memory",
+                                             "output",      "no-supervisor", "seed",    "source-map"};
     return names;
 }
 

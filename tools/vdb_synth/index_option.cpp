@@ -1,0 +1,23 @@
+#include "tools/vdb_synth/index_option.h"
+
+#include "libvdbsynth/base/error.h"
+
+#include <filesystem>
+
+namespace vdbsynth::cli {
+
+Option indexCacheOption() {
+    return {"index-cache", "FOLDER",
+            "keep the search index of an exemplar in this folder and read it from there the next time"};
+}
+
+std::string indexFolder(const Arguments& arguments) {
+    if (!arguments.has("index-cache")) return "";
+    const std::string folder = arguments.text("index-cache");
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(folder, ignored))
+        throw Error(ErrorCode::Io, "--index-cache " + folder + ": no such folder; make it first");
+    return folder;
+}
+
+}  // namespace vdbsynth::cli

@@ -1,0 +1,14 @@
+#pragma once
+#include "tools/vdb_synth/option_set.h"
+
+#include <string>
+
+namespace vdbsynth::cli {
+
+/// --index-cache: where indices of block search are kept.
+Option indexCacheOption();
+
+/// The folder, empty if none is given. @throw Error Io (no such folder)
+std::string indexFolder(const Arguments& arguments);
+
+}  // namespace vdbsynth::cli

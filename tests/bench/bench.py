@@ -98,15 +98,23 @@ class Bench:
 
     def block_match_row(self, name, kind, size):
         environment = {**os.environ, "VDBSYNTH_BENCH_QUERIES": "20" if self.quick else "200"}
-        result = subprocess.run([self.match, f"--benchmark_filter=^(ours|fftw)/{kind}/{size}/", "--benchmark_format=json"],
+        result = subprocess.run([self.match, f"--benchmark_filter=^(ours|near|fftw|brute|faiss)/{kind}/{size}/", "--benchmark_format=json"],
                                 env=environment, capture_output=True, text=True, check=True)
         found = {b["name"].split("/")[0]: b for b in json.loads(result.stdout)["benchmarks"]}
         ours, rival = found["ours"], found["fftw"]
         each = lambda b: b["real_time"] / b["queries"]
         radius = kind.startswith("balls_") and float(kind[6:]) >= 0.75
         budget = "3x" if radius and size == "128/16" else "5x" if radius and size == "256/32" else "at most 4x slower"
+        near, faiss = found["near"], found["faiss"]
+        if faiss.get("error_occurred"):
+            side, block = map(int, size.split("/"))  # every block is a vector of its own
+            others = f"Faiss would need {(side - block + 1) ** 3 * block ** 3 * 4 / 1e9:.0f} GB"
+        else:
+            others = f"Faiss {each(faiss):.0f} ms, {faiss['index_MB']:.0f} MB"
         self.row(name, f"{budget} of FFTW", f"{each(ours):.2f} ms a query", f"{each(rival):.2f} ms", f"{each(rival) / each(ours):.2f}x",
-                 f"index {ours['build_seconds']:.1f} s, {ours['index_MB']:.0f} MB; dearer: {ours['dearer_than_rival']:.0f}")
+                 f"index {ours['build_seconds']:.1f} s, {ours['index_MB']:.0f} MB; dearer: {ours['dearer_than_rival']:.0f}; "
+                 f"scan {each(found['brute']):.0f} ms; {others}; "
+                 f"tolerance 0.1: {each(near):.2f} ms, ratio {near['exactness_ratio']:.3f}, recall {near['recall']:.2f}")
 
     def synthesis(self):
         for kind in ("balls", "grid", "foam", "sponge"):

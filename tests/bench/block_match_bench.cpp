@@ -1,19 +1,22 @@
 // Exact best blocks beside the rival: all squared differences at once by FFT (FFTW, single precision, all
 // threads), the plan and what does not depend on the query made beforehand. Both answer the same queries, cut
-// from another seed's sample, half with one octant masked; what they find is compared.
+// from another seed's sample, half with one octant masked; what they find is compared. Beside them a scan
+// that gives up early, and Faiss where it fits.
 #include <benchmark/benchmark.h>
+#include <faiss/IndexFlat.h>
 #include <fftw3.h>
 
+#include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/base/random.h"
 #include "libvdbsynth/pipeline/make.h"
 #include "libvdbsynth/search/block_cost.h"
 #include "libvdbsynth/search/block_index.h"
+#include "libvdbsynth/search/block_index_data.h"
 #include "libvdbsynth/vdb/redistance.h"
 
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <complex>
@@ -200,6 +203,15 @@ double seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+std::vector<BlockQuery> blockQueries(const Setting& setting) {
+    std::vector<BlockQuery> queries(setting.queries.size());
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+        queries[i].samples = setting.queries[i].samples.data();
+        queries[i].known = setting.queries[i].known.empty() ? nullptr : setting.queries[i].known.data();
+    }
+    return queries;
+}
+
 // One iteration answers all queries, in parallel where that is how it would be used.
 void benchOurs(benchmark::State& state, const Row& row, int side, int block) {
     Setting& setting = settingFor(row, side, block);
@@ -210,11 +222,7 @@ void benchOurs(benchmark::State& state, const Row& row, int side, int block) {
     state.counters["build_seconds"] = seconds() - began;
     state.counters["index_MB"] = double(index.memoryBytes()) / 1e6;
     state.counters["queries"] = double(setting.queries.size());
-    std::vector<BlockQuery> queries(setting.queries.size());
-    for (std::size_t i = 0; i < queries.size(); ++i) {
-        queries[i].samples = setting.queries[i].samples.data();
-        queries[i].known = setting.queries[i].known.empty() ? nullptr : setting.queries[i].known.data();
-    }
+    const std::vector<BlockQuery> queries = blockQueries(setting);
     std::vector<std::vector<BlockMatch>> matches;
     for (auto _ : state) matches = index.matchAll(queries);
     // Both costs by the one function: ours may not be dearer than what the rival finds.
@@ -240,6 +248,79 @@ void benchRival(benchmark::State& state, const Row& row, int side, int block) {
         for (const Query& query : setting.queries) benchmark::DoNotOptimize(rival.match(query));
 }
 
+// Settling for a tenth more difference: how close the answers are, and how many of the exact ones are found.
+void benchNear(benchmark::State& state, const Row& row, int side, int block) {
+    Setting& setting = settingFor(row, side, block);
+    BlockIndexOptions options;
+    options.block = block;
+    const BlockIndex index = BlockIndex::build(setting.exemplar, options);
+    const std::vector<BlockQuery> queries = blockQueries(setting);
+    BlockSearchOptions search;
+    search.tolerance = 0.1;
+    state.counters["queries"] = double(queries.size());
+    std::vector<std::vector<BlockMatch>> matches;
+    for (auto _ : state) matches = index.matchAll(queries, search);
+    const auto exact = index.matchAll(queries);
+    double ratio = 0, recall = 0;
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+        const double a = std::sqrt(matches[i].front().cost), b = std::sqrt(exact[i].front().cost);
+        ratio += a == b ? 1 : a / b;
+        recall += matches[i].front().position == exact[i].front().position;
+    }
+    state.counters["exactness_ratio"] = ratio / double(queries.size());
+    state.counters["recall"] = recall / double(queries.size());
+}
+
+// A scan over all positions that leaves a block once it costs more than the best so far. Both threads, few
+// queries: one takes as long as all of ours.
+void benchBrute(benchmark::State& state, const Row& row, int side, int block) {
+    Setting& setting = settingFor(row, side, block);
+    const std::size_t count = std::min<std::size_t>(4, setting.queries.size());
+    state.counters["queries"] = double(count);
+    for (auto _ : state)
+        parallelFor({}, count, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                BlockQuery query;
+                query.samples = setting.queries[i].samples.data();
+                query.known = setting.queries[i].known.empty() ? nullptr : setting.queries[i].known.data();
+                benchmark::DoNotOptimize(matchBlocksLinearly(*setting.exemplar, block, query));
+            }
+        });
+}
+
+// Faiss's exhaustive index over all blocks as vectors, all queries at once as one product of matrices. It
+// knows no masks, so it answers those queries that have none.
+void benchFaiss(benchmark::State& state, const Row& row, int side, int block) {
+    Setting& setting = settingFor(row, side, block);
+    const IndexBox positions = blockPositions(*setting.exemplar, block);
+    const std::size_t dimension = std::size_t(block) * std::size_t(block) * std::size_t(block);
+    const double gigabytes = double(positions.volume()) * double(dimension) * 4 / 1e9;
+    if (gigabytes > 4) {
+        state.SkipWithError("its index would not fit: every block is a vector of its own");
+        return;
+    }
+    faiss::IndexFlatL2 index{faiss::Index::idx_t(dimension)};
+    std::vector<float> rows(std::size_t(positions.size().z) * dimension);
+    const double began = seconds();
+    for (int x = 0; x <= positions.max.x; ++x)
+        for (int y = 0; y <= positions.max.y; ++y) {
+            for (int z = 0; z <= positions.max.z; ++z)
+                setting.exemplar->readBox({x, y, z}, {block, block, block},
+                                          rows.data() + std::size_t(z) * dimension);
+            index.add(faiss::Index::idx_t(positions.size().z), rows.data());
+        }
+    state.counters["build_seconds"] = seconds() - began;
+    state.counters["index_MB"] = gigabytes * 1000;
+    std::vector<float> queries;
+    for (const Query& query : setting.queries)
+        if (query.known.empty()) queries.insert(queries.end(), query.samples.begin(), query.samples.end());
+    const auto count = faiss::Index::idx_t(queries.size() / dimension);
+    state.counters["queries"] = double(count);
+    std::vector<float> distances(std::size_t(count), 0);
+    std::vector<faiss::Index::idx_t> found(std::size_t(count), 0);
+    for (auto _ : state) index.search(count, queries.data(), 1, distances.data(), found.data());
+}
+
 }  // namespace
 }  // namespace vdbsynth
 
@@ -256,6 +337,9 @@ int main(int argc, char** argv) {
             };
             once("fftw", benchRival);
             once("ours", benchOurs);
+            once("near", benchNear);
+            once("brute", benchBrute);
+            once("faiss", benchFaiss);
         }
     benchmark::Initialize(&argc, argv);
     benchmark::RunSpecifiedBenchmarks();

@@ -9,7 +9,7 @@ test=(catch2 python3 procps)
 all=(libopenvdb-tools python3-openvdb python3-numpy python3-scipy python3-skimage chromium blender clang clang-format libclang-rt-14-dev)
 
 # Rivals of the benchmarks.
-bench=(libbenchmark-dev libfftw3-dev libopenvdb-tools python3)
+bench=(libbenchmark-dev libfaiss-dev libfftw3-dev libopenblas-dev libopenvdb-tools python3)
 
 case "${1:-build}" in
   build) wanted=("${build[@]}") ;;

@@ -30,3 +30,10 @@ find_library(XXHASH_LIBRARY xxhash REQUIRED)
 add_library(vdbsynth_xxhash INTERFACE)
 target_include_directories(vdbsynth_xxhash SYSTEM INTERFACE ${XXHASH_INCLUDE_DIR})
 target_link_libraries(vdbsynth_xxhash INTERFACE ${XXHASH_LIBRARY})
+
+# FLANN's own package drags in HDF5 and MPI; its kd-tree needs its headers and lz4 only.
+find_path(FLANN_INCLUDE_DIR flann/flann.hpp REQUIRED)
+find_library(LZ4_LIBRARY lz4 REQUIRED)
+add_library(vdbsynth_flann INTERFACE)
+target_include_directories(vdbsynth_flann SYSTEM INTERFACE ${FLANN_INCLUDE_DIR})
+target_link_libraries(vdbsynth_flann INTERFACE ${LZ4_LIBRARY})

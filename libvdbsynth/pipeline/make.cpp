@@ -2,13 +2,40 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/pipeline/analogy.h"
 #include "libvdbsynth/pipeline/field_model.h"
+#include "libvdbsynth/procedural/analogy_pair.h"
+
+#include <openvdb/openvdb.h>
 
 namespace vdbsynth {
 
+namespace {
+
+void requireVoxelSize(double voxelSize) {
+    requireOption(voxelSize > 0 && voxelSize < 1e30, "voxel-size", std::to_string(voxelSize),
+                  "above 0 (world)");
+}
+
+}  // namespace
+
+ModelPair makePair(const MakeOptions& options, const RunContext& ctx) {
+    requireVoxelSize(options.voxelSize);
+    const ThreadLimit limit(ctx);
+    const AnalogyPairFields made = makeAnalogyPair(options.exemplar, ctx);
+    const auto model = [&](const ExemplarField& field) {
+        return modelFromField(field.field, kExemplarLimit, field.exact, field.domain, options.voxelSize,
+                              "make " + options.exemplar.kind, "use a larger --resolution or another --seed",
+                              ctx);
+    };
+    ModelPair pair{model(made.plain), model(made.textured)};
+    for (const LevelSet* of : {&pair.plain, &pair.textured})
+        of->grid->insertMeta(kDirectionKey, openvdb::StringMetadata(made.direction));
+    return pair;
+}
+
 LevelSet makeModel(const MakeOptions& options, const RunContext& ctx) {
-    requireOption(options.voxelSize > 0 && options.voxelSize < 1e30, "voxel-size",
-                  std::to_string(options.voxelSize), "above 0 (world)");
+    requireVoxelSize(options.voxelSize);
     const ThreadLimit limit(ctx);
     const ExemplarField made = makeExemplar(options.exemplar, ctx);
     return modelFromField(made.field, kExemplarLimit, made.exact, made.domain, options.voxelSize,

@@ -15,4 +15,13 @@ struct MakeOptions {
 /// @par Repeats same bits for (options, ctx.seed), any number of threads
 LevelSet makeModel(const MakeOptions& options, const RunContext& ctx = {});
 
+/// A procedural pair, plain and textured, for analogies; the texture's direction is in the plain one's
+/// metadata (kDirectionKey).
+struct ModelPair {
+    LevelSet plain, textured;
+};
+
+/// @throw Error as makeModel    @par Repeats as makeModel
+ModelPair makePair(const MakeOptions& options, const RunContext& ctx = {});
+
 }  // namespace vdbsynth

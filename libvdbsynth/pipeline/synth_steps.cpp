@@ -2,7 +2,7 @@
 #include "libvdbsynth/pipeline/synth_steps.h"
 
 #include "libvdbsynth/base/error.h"
-#include "libvdbsynth/measure/components.h"
+#include "libvdbsynth/measure/crumbs.h"
 #include "libvdbsynth/vdb/mask.h"
 #include "libvdbsynth/vdb/redistance.h"
 
@@ -70,53 +70,20 @@ BrickField clipped(const SourceMap& map, BrickField field, const RunContext& ctx
                                 });
 }
 
-// What is smaller is a crumb.
-struct CrumbLimits {
-    std::uint64_t interior, cut;
-};
-
-CrumbLimits crumbLimits(const SourceMap& map, const ExemplarFields& exemplars, bool ofVoid,
-                        const RunContext& ctx) {
+// Half a block a side at most, and no larger than what a scaled exemplar has.
+void removeCrumbsOf(const SourceMap& map, const ExemplarFields& exemplars, BrickField& field,
+                    const RunContext& ctx) {
     const std::uint64_t half = std::uint64_t(map.patches.block / 2);
-    CrumbLimits limits{half * half * half, half * half * half};
-    for (const auto& exemplar : exemplars) {
-        const Occupancy solid = Occupancy::fromField(*exemplar, ctx);
-        const Components parts = ofVoid ? findComponents(solid.complement(), Neighbours::Faces)
-                                        : findComponents(solid, Neighbours::All);
-        // Sizes are sorted, so what touches a face is what is left of all without the interior ones.
-        std::vector<std::uint64_t> cut;
-        std::set_difference(parts.sizes.begin(), parts.sizes.end(), parts.interior.begin(),
-                            parts.interior.end(), std::back_inserter(cut), std::greater<>());
-        const std::vector<std::uint64_t>& interior = parts.interior;
-        if (!interior.empty())
-            limits.interior =
-                std::min(limits.interior, interior[interior.size() - 1 - interior.size() / 100]);
-        if (!cut.empty()) limits.cut = std::min(limits.cut, cut.back());
-    }
     double least = 1;
     for (const ExemplarVariant& variant : map.variants) least = std::min(least, variant.scale);
-    limits.interior = std::uint64_t(double(limits.interior) * least * least * least);
-    limits.cut = std::uint64_t(double(limits.cut) * least * least * least);
-    return limits;
-}
-
-// Gives crumbs the side that is around them.
-void removeCrumbs(const SourceMap& map, const ExemplarFields& exemplars, BrickField& field,
-                  const RunContext& ctx) {
-    constexpr float kLeast = 0.1f;  // [voxels] so that a voxel has its new side for certain
     Stage stage(ctx, "removing crumbs", 2);
     for (const bool ofVoid : {false, true}) {
-        const CrumbLimits limits = crumbLimits(map, exemplars, ofVoid, ctx);
-        const Occupancy solid = Occupancy::fromField(field, ctx);
-        const std::vector<Index3> crumbs =
-            ofVoid ? smallParts(solid.complement(), Neighbours::Faces, limits.interior, limits.cut)
-                   : smallParts(solid, Neighbours::All, limits.interior, limits.cut);
-        for (const Index3& p : crumbs) {
-            const float depth = std::max(kLeast, std::abs(field.inside(p))), value = ofVoid ? -depth : depth;
-            field.writeBox(p, {1, 1, 1}, &value);
-        }
+        CrumbLimits limits = crumbLimits(exemplars, half * half * half, ofVoid, ctx);
+        limits.interior = std::uint64_t(double(limits.interior) * least * least * least);
+        limits.cut = std::uint64_t(double(limits.cut) * least * least * least);
+        const std::size_t changed = removeCrumbs(field, limits, ofVoid, ctx);
         message(ctx, MessageLevel::Detail,
-                std::to_string(crumbs.size()) + " voxels of crumbs of the " + (ofVoid ? "void" : "solid") +
+                std::to_string(changed) + " voxels of crumbs of the " + (ofVoid ? "void" : "solid") +
                     " changed sides");
         stage.advance();
     }
@@ -302,7 +269,7 @@ LevelSet finishSynthesis(const SourceMap& map, BrickField voted, const ExemplarF
                          const openvdb::FloatGrid& like, const RunContext& ctx) {
     LevelSet model;
     BrickField field = clipped(map, std::move(voted), ctx);
-    removeCrumbs(map, exemplars, field, ctx);
+    removeCrumbsOf(map, exemplars, field, ctx);
     Index3 corner = map.targetBox.min;
     for (int axis = 0; axis < 3; ++axis)
         if (map.cut[std::size_t(2 * axis)]) corner[axis] = map.targetDomain.min[axis];

@@ -36,6 +36,7 @@ const std::vector<ExemplarKind>& exemplarKinds() {
         {"foam", "closed cells with thin walls", 20, 0},
         {"sponge", "a thresholded random field", 20, 0},
         {"terrain", "hills with finer and finer detail", 32, 1.25},
+        {"three-tori", "three rings through each other, an object of its own", 16, 0},
         {"weave", "yarns over and under each other", 16, 1.25},
     };
     return kinds;
@@ -76,6 +77,8 @@ ExemplarField makeExemplar(const ExemplarOptions& options, const RunContext& ctx
         fromPrimitives(fibresPrimitives(request));
     else if (kind.name == "weave")
         fromPrimitives(weavePrimitives(request));
+    else if (kind.name == "three-tori")
+        fromPrimitives(threeToriPrimitives(request));
     else if (kind.name == "foam")
         result.field = foamField(request, ctx);
     else if (kind.name == "sponge")

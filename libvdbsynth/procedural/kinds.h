@@ -19,6 +19,7 @@ std::vector<Primitive> ballsPrimitives(const ExemplarRequest& request, const Run
 std::vector<Primitive> gridPrimitives(const ExemplarRequest& request);
 std::vector<Primitive> chainmailPrimitives(const ExemplarRequest& request);
 std::vector<Primitive> fibresPrimitives(const ExemplarRequest& request);
+std::vector<Primitive> threeToriPrimitives(const ExemplarRequest& request);
 std::vector<Primitive> weavePrimitives(const ExemplarRequest& request);
 BrickField foamField(const ExemplarRequest& request, const RunContext& ctx);
 BrickField spongeField(const ExemplarRequest& request, const RunContext& ctx);

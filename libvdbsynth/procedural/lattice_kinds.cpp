@@ -125,6 +125,23 @@ std::vector<Primitive> fibresPrimitives(const ExemplarRequest& request) {
     return primitives;
 }
 
+// As large as the domain allows with a tenth of it free at every side, for what a texture may add.
+std::vector<Primitive> threeToriPrimitives(const ExemplarRequest& request) {
+    const Index3 size = request.domain.size();
+    const double side = std::min({size.x, size.y, size.z});
+    Vec3d middle;
+    for (int axis = 0; axis < 3; ++axis) middle[axis] = (size[axis] - 1) / 2.0;
+    std::vector<Primitive> primitives;
+    for (int axis = 0; axis < 3; ++axis) {
+        Random random(request.seed, std::uint64_t(axis), kYarn);
+        Vec3d along{random.uniform(-0.06, 0.06), random.uniform(-0.06, 0.06), random.uniform(-0.06, 0.06)};
+        along[axis] = 1;
+        const double tube = side * random.uniform(0.095, 0.105);
+        primitives.push_back(torus(middle, normalized(along), 0.4 * side - tube, tube));
+    }
+    return primitives;
+}
+
 std::vector<Primitive> weavePrimitives(const ExemplarRequest& request) {
     const double f = request.feature;
     const Vec3d phase = phaseOf(request);

@@ -3,9 +3,11 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/pipeline/make.h"
 #include "libvdbsynth/pipeline/outputs.h"
+#include "libvdbsynth/procedural/analogy_pair.h"
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace vdbsynth::cli {
@@ -23,14 +25,50 @@ Index3 wholeTriple(const Arguments& arguments, const std::string& name) {
     return result;
 }
 
+bool isPair(const std::string& kind) {
+    const auto& kinds = analogyPairKinds();
+    return std::any_of(kinds.begin(), kinds.end(), [&](const AnalogyPairKind& k) { return k.name == kind; });
+}
+
+// make KIND OUT OUT2: a plain model and the same with a texture.
+void makeTwo(Run& run, const MakeOptions& options) {
+    const std::vector<std::string> paths(run.arguments.inputs.begin() + 1, run.arguments.inputs.end());
+    if (paths.size() != 2 || run.arguments.has("output"))
+        throw Error(ErrorCode::InvalidOption, "make " + options.exemplar.kind +
+                                                  ": is a pair; give two outputs, vdb_synth make " +
+                                                  options.exemplar.kind + " A.vdb A2.vdb");
+    if (run.arguments.has("size"))
+        throw Error(ErrorCode::InvalidOption,
+                    "--size: a pair's domain follows from --resolution and --feature");
+    requireOutputPaths(paths);
+    for (const std::string& path : paths) run.outputs().reserve(path);
+    run.reserveOutputs();
+    const double halfWidth = run.arguments.real("half-width", 3, 1.5, 100);
+    const ModelPair pair = makePair(options, run.context);
+    ModelOutputOptions outputs;
+    outputs.metadata = run.metadata();
+    outputs.metadata.emplace_back("vdbsynth:kind", options.exemplar.kind);
+    writeModel(withHalfWidth(pair.plain, halfWidth, run.context), {paths[0]}, outputs, run.outputs(),
+               run.context);
+    writeModel(withHalfWidth(pair.textured, halfWidth, run.context), {paths[1]}, outputs, run.outputs(),
+               run.context);
+    run.describe(pair.textured);
+    run.finish();
+}
+
 void make(Run& run) {
-    run.requireInputs(1, 2);
+    run.requireInputs(1, 3);
     MakeOptions options;
     options.exemplar.kind = run.arguments.inputs[0];
     options.exemplar.resolution = run.arguments.whole("resolution", 64, 16, 4096);
     options.exemplar.feature = run.arguments.has("feature") ? run.arguments.real("feature", 0, 4, 256) : 0;
     options.exemplar.size = wholeTriple(run.arguments, "size");
     options.voxelSize = run.arguments.real("voxel-size", 1, 1e-30, 1e30);
+    if (isPair(options.exemplar.kind)) {
+        makeTwo(run, options);
+        return;
+    }
+    run.requireInputs(1, 2);
     // The contract's form is "make KIND OUT"; -o works as everywhere else.
     std::vector<std::string> paths = run.arguments.all("output");
     if (run.arguments.inputs.size() == 2) paths.insert(paths.begin(), run.arguments.inputs[1]);
@@ -55,6 +93,12 @@ std::string summary() {
         text += (first ? "" : ", ") + kind.name;
         first = false;
     }
+    text += "; or an analogy's pair (OUT plain, OUT2 textured): ";
+    first = true;
+    for (const AnalogyPairKind& kind : analogyPairKinds()) {
+        text += (first ? "" : ", ") + kind.name;
+        first = false;
+    }
     return text;
 }
 
@@ -62,7 +106,7 @@ std::string summary() {
 
 const Command kMake{
     "make",
-    "make KIND OUT [options]",
+    "make KIND OUT [OUT2] [options]",
     summary(),
     "vdb_synth make grid grid.vdb --seed 3",
     {{"size", "X,Y,Z", "domain (voxels); default a cube of --resolution, flat kinds less high"},

@@ -1,6 +1,7 @@
 #include "tools/vdb_synth/carry_options.h"
 #include "tools/vdb_synth/command.h"
 #include "tools/vdb_synth/index_option.h"
+#include "tools/vdb_synth/map_place.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
@@ -107,34 +108,6 @@ LevelSet holeOf(Run& run, const LevelSet& partial, const ModelOptions& like) {
     ModelOptions options = like;
     options.grid.clear();
     return run.load(text, options);
-}
-
-// Where --source-map goes.
-struct MapPlace {
-    std::string path;     // empty: nowhere
-    bool inside = false;  // into the .vdb output
-};
-
-MapPlace mapPlaceOf(const Arguments& arguments, const std::vector<std::string>& outputs) {
-    MapPlace place{arguments.text("source-map"), false};
-    place.inside = place.path == kNoValue;
-    bool anyVdb = false;
-    for (const std::string& path : outputs) anyVdb = anyVdb || extensionOf(path) == "vdb";
-    if (place.path.empty()) return place;
-    requireOption(place.inside || extensionOf(place.path) == "vdb", "source-map", place.path, "a .vdb file");
-    if (place.inside && !anyVdb)
-        throw Error(ErrorCode::InvalidOption,
-                    "--source-map: without a file it goes into a .vdb output, and there is none; give "
-                    "--source-map FILE.vdb");
-    return place;
-}
-
-void writeWithMap(Run& run, const LevelSet& model, const std::vector<GridPtr>& map, const MapPlace& place,
-                  const std::vector<std::string>& paths, ModelOutputOptions outputs) {
-    outputs.metadata = run.metadata();
-    if (place.inside) outputs.extraGrids = map;
-    writeModel(model, paths, outputs, run.outputs(), run.context);
-    if (!place.path.empty() && !place.inside) writeVdb(run.outputs().add(place.path), map, outputs.metadata);
 }
 
 // synth [EXEMPLAR] --keep PARTIAL --hole MODEL: more geometry where some is missing.
@@ -322,10 +295,7 @@ const Command kSynth{
      {"hole", "MODEL",
       "what to fill with --keep: the inside of a model, a box i,j,k,I,J,K of the kept model's voxels, or "
       "auto: a ball round each loop of open edges"},
-     {"source-map", "[FILE.vdb]",
-      "also write the source map, for repeat (of a filled hole only what was copied from where); without "
-      "FILE into the .vdb output",
-      false, 0, ".vdb"},
+     mapOption(),
      indexCacheOption(),
      carryOptions()[0],
      carryOptions()[1],

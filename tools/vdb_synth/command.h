@@ -81,6 +81,7 @@ std::string helpText(const Command& command);
 /// Data for standard output.
 void printLine(const std::string& text);
 
-extern const Command kCompare, kConvert, kInfo, kCrop, kMask, kMatch, kSynth, kRepeat, kRender, kMake;
+extern const Command kAnalogy, kCompare, kConvert, kInfo, kCrop, kMask, kMatch, kSynth, kRepeat, kRender,
+    kMake;
 
 }  // namespace vdbsynth::cli

@@ -19,8 +19,8 @@ namespace {
 
 // The only registry of commands.
 const std::vector<const Command*>& commands() {
-    static const std::vector<const Command*> all{&kConvert, &kInfo,   &kCrop,    &kMask,   &kMatch,
-                                                 &kSynth,   &kRepeat, &kCompare, &kRender, &kMake};
+    static const std::vector<const Command*> all{&kConvert, &kInfo,   &kCrop,    &kMask,   &kMatch, &kSynth,
+                                                 &kAnalogy, &kRepeat, &kCompare, &kRender, &kMake};
     return all;
 }
 

@@ -1,0 +1,49 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/grid/brick_field.h"
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace vdbsynth {
+
+/// A sparse set of voxels with a number each, in the order of their bricks: what is known of voxel i is the
+/// i-th element of an array.
+class VoxelTable {
+public:
+    VoxelTable() = default;
+    /// Those voxels of a field's box whose value is wanted.
+    /// @param wanted  a pure function of the value; asked once for a brick of one value
+    /// @par Cost    O(bricks + voxels of those that are not constant)
+    /// @par Repeats same numbers for any number of threads
+    static VoxelTable where(const BrickField& field, const std::function<bool(float)>& wanted,
+                            const RunContext& ctx = {});
+
+    std::size_t size() const { return mVoxels.size(); }
+    const std::vector<Index3>& voxels() const { return mVoxels; }
+    const Index3& operator[](std::size_t i) const { return mVoxels[i]; }
+    /// Number of a voxel, negative if it is not in the set.
+    std::int32_t find(const Index3& p) const {
+        if (!mBox.contains(p)) return -1;
+        const int x = p.x - mBox.min.x, y = p.y - mBox.min.y, z = p.z - mBox.min.z;
+        const std::int32_t slot = mSlots[brickIndex(x >> 3, y >> 3, z >> 3)];
+        if (slot < 0) return -1;
+        return mNumbers[std::size_t(slot) * BrickField::kSamples +
+                        std::size_t((((x & 7) << 3) | (y & 7)) << 3 | (z & 7))];
+    }
+
+private:
+    std::size_t brickIndex(int bx, int by, int bz) const {
+        return (std::size_t(bx) * std::size_t(mBricks.y) + std::size_t(by)) * std::size_t(mBricks.z) +
+               std::size_t(bz);
+    }
+
+    IndexBox mBox;
+    Index3 mBricks;
+    std::vector<std::int32_t> mSlots;    // per brick: number of its table, or -1
+    std::vector<std::int32_t> mNumbers;  // kSamples a table
+    std::vector<Index3> mVoxels;
+};
+
+}  // namespace vdbsynth

@@ -1,0 +1,326 @@
+#include "libvdbsynth/pipeline/analogy.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/grid/field_sampling.h"
+#include "libvdbsynth/measure/crumbs.h"
+#include "libvdbsynth/pipeline/analogy_steps.h"
+#include "libvdbsynth/pipeline/carry.h"
+#include "libvdbsynth/pipeline/control.h"
+#include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/redistance.h"
+
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+
+namespace vdbsynth {
+namespace {
+
+constexpr int kMostReach = 40;    // [voxels] that a texture may go from its plain surface
+constexpr float kResultBand = 6;  // [voxels] in which the result's distances are blended
+constexpr int kCrumbSide = 4;     // [voxels] parts that fit a cube of this side may be crumbs
+constexpr float kMaskBorder = 3;  // [voxels] over which a model's mask fades
+
+// Which faces of its domain a solid goes through.
+CutFaces facesTouched(const LevelSet& model) {
+    CutFaces cut{};
+    if (!model.domainRecorded) return cut;
+    const IndexBox solid = solidBox(*model.grid, "the model");
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        cut[2 * axis] = solid.min[int(axis)] <= model.domain.min[int(axis)];
+        cut[2 * axis + 1] = solid.max[int(axis)] >= model.domain.max[int(axis)];
+    }
+    return cut;
+}
+
+// A domain with room at the faces that are no cuts.
+IndexBox grown(const IndexBox& domain, const CutFaces& cut, int by) {
+    IndexBox box = domain;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (!cut[2 * axis]) box.min[int(axis)] -= by;
+        if (!cut[2 * axis + 1]) box.max[int(axis)] += by;
+    }
+    return box;
+}
+
+// A pair as fields over one box, at the texture's scale.
+struct PairFields {
+    std::shared_ptr<const BrickField> plain, textured;
+    IndexBox box;    // index space of the pair
+    IndexBox inner;  // of the fields
+    FieldPlace place;
+};
+
+void requireOnePlace(const AnalogyModelPair& pair) {
+    const auto& a = pair.plain->grid->transform();
+    const auto& b = pair.textured->grid->transform();
+    if (!(a == b))
+        throw Error(ErrorCode::ShapeMismatch,
+                    "the two models of the pair must have the same voxels in the same place: voxel sizes " +
+                        std::to_string(voxelSizeOf(*pair.plain->grid)) + " and " +
+                        std::to_string(voxelSizeOf(*pair.textured->grid)) +
+                        "; convert both with the same --voxel-size");
+}
+
+// How far from the plain surface the textured one goes. [voxels]
+float reachOf(const BrickField& plain, const BrickField& textured) {
+    float reach = 0;
+    std::vector<float> a(std::size_t(plain.box().size().z)), b(a.size());
+    for (int x = 0; x <= plain.box().max.x; ++x)
+        for (int y = 0; y <= plain.box().max.y; ++y) {
+            plain.readBox({x, y, 0}, {1, 1, plain.box().size().z}, a.data());
+            textured.readBox({x, y, 0}, {1, 1, plain.box().size().z}, b.data());
+            for (std::size_t z = 0; z < a.size(); ++z)
+                if (std::abs(b[z]) < 1) reach = std::max(reach, std::abs(a[z]));
+        }
+    return reach;
+}
+
+BrickField scaled(const BrickField& field, double scale, const RunContext& ctx) {
+    const Index3 size = field.box().size();
+    Index3 to;
+    for (int axis = 0; axis < 3; ++axis) to[axis] = std::max(1, int(std::lround(size[axis] * scale)));
+    const float back = float(1 / scale);
+    return BrickField::generate(IndexBox::fromSize(to), ctx, [&](const IndexBox& brick, float* samples) {
+        for (int i = 0; i < BrickField::kSamples; ++i) {
+            const Index3 p = brick.min + Index3{i >> 6, (i >> 3) & 7, i & 7};
+            samples[i] = sampleTrilinear(field, {float(p.x) * back, float(p.y) * back, float(p.z) * back}) *
+                         float(scale);
+        }
+    });
+}
+
+PairFields gatherPair(const AnalogyModelPair& pair, double scale, const RunContext& ctx) {
+    requireOnePlace(pair);
+    const CutFaces cutPlain = facesTouched(*pair.plain), cutTextured = facesTouched(*pair.textured);
+    CutFaces cut;
+    for (std::size_t f = 0; f < cut.size(); ++f) cut[f] = cutPlain[f] || cutTextured[f];
+    IndexBox domain = pair.plain->domain;
+    const IndexBox& other = pair.textured->domain;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const int a = int(axis);
+        domain.min[a] =
+            cut[2 * axis] ? std::max(domain.min[a], other.min[a]) : std::min(domain.min[a], other.min[a]);
+        domain.max[a] =
+            cut[2 * axis + 1] ? std::min(domain.max[a], other.max[a]) : std::max(domain.max[a], other.max[a]);
+    }
+    if (domain.empty())
+        throw Error(ErrorCode::ShapeMismatch, "the two models of the pair do not overlap: domains " +
+                                                  boxText(pair.plain->domain) + " and " + boxText(other));
+    PairFields fields;
+    fields.box = grown(domain, cut, kMostReach);
+    requireMemory(ctx, double(fields.box.volume()) * 12, "the pair", "use larger voxels or crop the pair");
+    const auto gathered = [&](const LevelSet& model, const CutFaces& faces) {
+        return widenBand(*model.grid, fields.box, faces, float(kMostReach), ctx);
+    };
+    BrickField plain = gathered(*pair.plain, cutPlain), textured = gathered(*pair.textured, cutTextured);
+    const bool same = scale == 1;
+    fields.plain = std::make_shared<const BrickField>(same ? std::move(plain) : scaled(plain, scale, ctx));
+    fields.textured =
+        std::make_shared<const BrickField>(same ? std::move(textured) : scaled(textured, scale, ctx));
+    fields.inner = fields.plain->box();
+    fields.place = {pair.plain->grid.get(),
+                    {double(fields.box.min.x), double(fields.box.min.y), double(fields.box.min.z)},
+                    1 / scale};
+    return fields;
+}
+
+DirectionSource directionOfPair(const LevelSet& plain, const DirectionSource& given) {
+    if (given.kind != DirectionSource::Kind::Automatic) return given;
+    DirectionSource source;
+    const auto recorded = plain.grid->getMetadata<openvdb::StringMetadata>(kDirectionKey);
+    if (recorded) parseDirection(recorded->value(), source);
+    return source;
+}
+
+// 0..1 over the target's box.
+BrickField weights(const AnalogyOptions& options, const IndexBox& box, const openvdb::FloatGrid& like,
+                   const RunContext& ctx) {
+    if (!options.mask) return BrickField(IndexBox::fromSize(box.size()), float(options.strength));
+    ControlFrame frame;
+    frame.box = box;
+    frame.like = &like;
+    const bool solid = options.mask->getGridClass() == openvdb::GRID_LEVEL_SET;
+    const float border = kMaskBorder * float(voxelSizeOf(like));
+    const BrickField mask = sampledScalar(*options.mask, frame, "--mask", ctx);
+    return BrickField::generate(mask.box(), ctx, [&](const IndexBox& brick, float* samples) {
+        mask.readBox(brick.min, brick.size(), samples);
+        for (int i = 0; i < BrickField::kSamples; ++i) {
+            const float value = solid ? 0.5f - samples[i] / (2 * border) : samples[i];
+            samples[i] = float(options.strength) * std::clamp(value, 0.f, 1.f);
+        }
+    });
+}
+
+// The target where the weight is 0, what was made where it is 1, in between their mean.
+BrickField blended(const BrickField& target, const BrickField& made, const BrickField& weight,
+                   const RunContext& ctx) {
+    return BrickField::generate(made.box(), ctx, [&](const IndexBox& brick, float* samples) {
+        std::array<float, BrickField::kSamples> plain, share;
+        made.readBox(brick.min, brick.size(), samples);
+        target.readBox(brick.min, brick.size(), plain.data());
+        weight.readBox(brick.min, brick.size(), share.data());
+        for (std::size_t i = 0; i < plain.size(); ++i) {
+            const float before = std::clamp(plain[i], -kResultBand, kResultBand);
+            samples[i] = share[i] == 1 ? samples[i] : before + share[i] * (samples[i] - before);
+        }
+    });
+}
+
+void clean(BrickField& field, const std::vector<PairFields>& pairs, const RunContext& ctx) {
+    std::vector<std::shared_ptr<const BrickField>> exemplars;
+    for (const PairFields& pair : pairs) exemplars.push_back(pair.textured);
+    for (const bool ofVoid : {false, true}) {
+        const CrumbLimits limits =
+            crumbLimits(exemplars, std::uint64_t(kCrumbSide) * kCrumbSide * kCrumbSide, ofVoid, ctx);
+        const std::size_t changed = removeCrumbs(field, limits, ofVoid, ctx);
+        message(ctx, MessageLevel::Detail,
+                std::to_string(changed) + " voxels of crumbs of the " + (ofVoid ? "void" : "solid") +
+                    " changed sides");
+    }
+}
+
+std::vector<MappedVoxel> mappedVoxels(const VolumeAnalogyResult& made, const std::vector<PairFields>& pairs,
+                                      const IndexBox& box, const openvdb::FloatGrid& result) {
+    std::vector<MappedVoxel> voxels;
+    const auto on = result.getConstAccessor();
+    for (const AnalogySource& source : made.sources) {
+        const Index3 to = source.to + box.min;
+        if (!on.isValueOn(toCoord(to))) continue;
+        const PairFields& pair = pairs[std::size_t(source.pair)];
+        Index3 from;
+        for (int axis = 0; axis < 3; ++axis)
+            from[axis] = int(std::lround(pair.place.corner[axis] + source.from[axis] * pair.place.step));
+        voxels.push_back({to, {std::size_t(source.pair), from, nullptr}});
+    }
+    return voxels;
+}
+
+std::vector<GridPtr> sourceGrids(const VolumeAnalogyResult& made, const std::vector<MappedVoxel>& voxels,
+                                 const std::vector<FrameField>& frames, const FrameField& target,
+                                 const IndexBox& box, const std::vector<AnalogyModelPair>& models,
+                                 const openvdb::FloatGrid& result, double scale) {
+    auto source = openvdb::Vec3IGrid::create(openvdb::Vec3i(0));
+    auto exemplar = openvdb::Int32Grid::create(0);
+    auto rotation = openvdb::Vec3SGrid::create(openvdb::Vec3f(0));
+    source->setName("source");
+    exemplar->setName("exemplar");
+    rotation->setName("source_rotation");
+    std::vector<GridPtr> grids{source, exemplar, rotation};
+    if (scale != 1) {
+        auto scales = openvdb::FloatGrid::create(1);
+        scales->setName("source_scale");
+        for (const MappedVoxel& voxel : voxels) scales->tree().setValueOn(toCoord(voxel.to), float(scale));
+        grids.push_back(scales);
+    }
+    std::size_t next = 0;
+    for (const AnalogySource& of : made.sources) {
+        if (next == voxels.size()) break;
+        const MappedVoxel& voxel = voxels[next];
+        if (of.to + box.min != voxel.to) continue;
+        ++next;
+        const openvdb::Coord to = toCoord(voxel.to);
+        const Index3& from = voxel.from.voxel;
+        source->tree().setValueOn(to, openvdb::Vec3i(from.x, from.y, from.z));
+        exemplar->tree().setValueOn(to, of.pair);
+        Frame a, b;
+        float ignored;
+        const auto middle = [](const Index3& v) { return Vec3f{float(v.x), float(v.y), float(v.z)}; };
+        if (frames[std::size_t(of.pair)].at(middle(of.from), a, ignored) &&
+            target.at(middle(of.to), b, ignored)) {
+            const Vec3f turn = rotationBetween(a, b);
+            rotation->tree().setValueOn(to, openvdb::Vec3f(turn.x, turn.y, turn.z));
+        }
+    }
+    std::string hashes;
+    for (const AnalogyModelPair& model : models)
+        hashes += (hashes.empty() ? "" : ",") + levelSetHash(*model.textured->grid);
+    for (const GridPtr& grid : grids) {
+        grid->setTransform(result.transform().copy());
+        grid->insertMeta("vdbsynth:map:exemplar_hash", openvdb::StringMetadata(hashes));
+    }
+    return grids;
+}
+
+GridPtr directionGrid(const FrameField& frames, const FieldPlace& place, const IndexBox& box) {
+    auto grid = openvdb::Vec3SGrid::create(openvdb::Vec3f(0));
+    grid->setName("direction");
+    grid->setVectorType(openvdb::VEC_CONTRAVARIANT_RELATIVE);
+    grid->setTransform(place.like->transform().copy());
+    const Vec3d origin = place.toWorld({0, 0, 0});
+    const SurfaceShell& shell = frames.shell();
+    for (std::size_t i = 0; i < shell.size(); ++i) {
+        const Vec3d world = normalized(place.toWorld(cast<double>(frames.directions().tangent[i])) - origin);
+        grid->tree().setValueOn(toCoord(shell.table[i] + box.min), openvdb::Vec3f(toVec(world)));
+    }
+    return grid;
+}
+
+}  // namespace
+
+AnalogyResult makeAnalogyModel(const std::vector<AnalogyModelPair>& pairs, const LevelSet& target,
+                               const AnalogyOptions& options, const RunContext& ctx) {
+    requireOption(options.scale >= 0.25 && options.scale <= 4, "scale", std::to_string(options.scale),
+                  "from 0.25 to 4");
+    requireOption(options.strength >= 0 && options.strength <= 1, "strength",
+                  std::to_string(options.strength), "from 0 to 1");
+    const ThreadLimit limit(ctx);
+    AnalogyResult result;
+    std::vector<PairFields> fields;
+    for (const AnalogyModelPair& pair : pairs) {
+        fields.push_back(gatherPair(pair, options.scale, ctx));
+        const float reach = reachOf(*fields.back().plain, *fields.back().textured);
+        if (reach > float(kMostReach - 1) * float(std::min(options.scale, 1.0)))
+            throw Error(
+                ErrorCode::Unusable,
+                "the texture goes more than " + std::to_string(kMostReach - 1) +
+                    " voxels from the plain model's surface; use larger voxels, or check that the two "
+                    "models of the pair lie on each other");
+        result.reach = std::max(result.reach, reach);
+    }
+    const int radius = (options.synthesis.half + 2)
+                       << (std::max(1, std::min(options.synthesis.levels, 6)) - 1);
+    const int band = int(std::ceil(result.reach)) + radius + 2;
+    const CutFaces cut = facesTouched(target);
+    const IndexBox box = grown(target.domain, cut, band);
+    requireMemory(ctx, double(box.volume()) * 6 + double(activeVoxels(*target.grid)) / 6 * 2 * band * 160,
+                  "the analogy", "use larger voxels, fewer --levels or a smaller --neighbourhood");
+    const auto plain =
+        std::make_shared<const BrickField>(widenBand(*target.grid, box, cut, float(band), ctx));
+    const FieldPlace place{target.grid.get(), {double(box.min.x), double(box.min.y), double(box.min.z)}, 1};
+    const FrameField frames = framesOf(plain, place, options.direction, "the target", ctx);
+    std::vector<FrameField> pairFrames;
+    for (std::size_t p = 0; p < pairs.size(); ++p)
+        pairFrames.push_back(framesOf(fields[p].plain, fields[p].place,
+                                      directionOfPair(*pairs[p].plain, options.exemplarDirection), "the pair",
+                                      ctx));
+    std::vector<AnalogyPair> given;
+    for (std::size_t p = 0; p < pairs.size(); ++p)
+        given.push_back({fields[p].plain, fields[p].textured, &pairFrames[p], fields[p].inner});
+    VolumeAnalogyResult made = makeAnalogy(given, *plain, frames, options.synthesis, ctx);
+    BrickField field = blended(*plain, made.distance, weights(options, box, *target.grid, ctx), ctx);
+    clean(field, fields, ctx);
+    result.model.grid =
+        closeAndRebuild(field, box.min, cut, options.halfWidth, *target.grid, "the result", ctx);
+    result.model.domain = target.domainRecorded ? target.domain : solidBox(*result.model.grid, "the result");
+    result.model.domainRecorded = target.domainRecorded;
+    stampLevelSet(result.model);
+    const std::vector<MappedVoxel> voxels = mappedVoxels(made, fields, box, *result.model.grid);
+    result.sources =
+        sourceGrids(made, voxels, pairFrames, frames, box, pairs, *result.model.grid, options.scale);
+    std::vector<const LevelSet*> textured;
+    for (const AnalogyModelPair& pair : pairs) textured.push_back(pair.textured);
+    result.model.carried = carryToVoxels(voxels, textured, *result.model.grid, {}, ctx);
+    if (options.keepDirections) result.directions = directionGrid(frames, place, box);
+    result.levels = std::move(made.levels);
+    for (const Vec3f& p : frames.directions().singularities)
+        result.singularities.push_back(place.toWorld(cast<double>(p)));
+    result.cut = frames.sweep().cut;
+    return result;
+}
+
+}  // namespace vdbsynth

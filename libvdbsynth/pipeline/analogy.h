@@ -1,0 +1,76 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/synth/volume_analogy.h"
+#include "libvdbsynth/vdb/level_set.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace vdbsynth {
+
+/// A direction given at a place. [world]
+struct Stroke {
+    Vec3d position, direction;
+};
+
+/// Which way a texture runs over a surface.
+struct DirectionSource {
+    enum class Kind {
+        Automatic,  ///< along the least curvature (curvature_direction.h)
+        Axis,       ///< along `axis`
+        Around,     ///< around `axis` through the middle of the model
+        Radial,     ///< away from the middle of the model
+        Grid,       ///< the vectors of `grid`, or the gradient of its scalars
+        Strokes     ///< as `strokes` say, in between diffused
+    } kind = Kind::Automatic;
+    Vec3d axis{0, 0, 1};  ///< [world]
+    GridPtr grid;
+    std::vector<Stroke> strokes;
+};
+
+/// Metadata of a level set that says which way its texture runs, as --direction has it; `make` writes it.
+inline constexpr const char* kDirectionKey = "vdbsynth:direction";
+
+/// `axis:x`, `axis:-z`, `around:y`, `radial`, `curvature`.
+/// @return false if the text is none of these
+bool parseDirection(const std::string& text, DirectionSource& source);
+
+struct AnalogyOptions {
+    VolumeAnalogyOptions synthesis;
+    DirectionSource direction;          ///< over the target
+    DirectionSource exemplarDirection;  ///< over the plain model of each pair
+    double scale = 1;              ///< of the texture, 0.25..4: 2 is twice as large in the target's voxels
+    double strength = 1;           ///< 0..1: how far the target becomes the result
+    GridPtr mask;                  ///< 0..1 over the target, by which strength is multiplied; null: 1
+    float halfWidth = kHalfWidth;  ///< [voxels] of the result
+    bool keepDirections = false;   ///< fills AnalogyResult::directions
+};
+
+struct AnalogyModelPair {
+    const LevelSet* plain = nullptr;
+    const LevelSet* textured = nullptr;
+};
+
+struct AnalogyResult {
+    LevelSet model;
+    std::vector<GridPtr> sources;  ///< `source`, `exemplar`, `source_rotation` on the result's band
+    GridPtr directions;            ///< Vec3S beside the target's surface, unit length [world]
+    std::vector<AnalogyLevelStats> levels;
+    std::vector<Vec3d> singularities;  ///< [world] of the target's directions
+    double cut = 0;                    ///< SweepDistance::cut of the target
+    float reach = 0;                   ///< [voxels] how far from the plain surface the texture goes
+};
+
+/// plain : textured = target : result (synth/volume_analogy.h), rebuilt to a valid narrow band; what the
+/// textured models carry comes along. Faces of recorded domains that a solid touches are cuts: the pair goes
+/// on beyond them and nothing is copied from there, a target is capped there again; elsewhere the result may
+/// grow out of its domain.
+/// @throw Error InvalidOption, ShapeMismatch (the models of a pair differ in voxels or place), Unusable (a
+/// pair too small, a texture that goes too far from the surface, no direction possible), EmptyInput, Memory,
+/// Cancelled
+/// @par Cost    see makeAnalogy    @par Repeats same bits for any number of threads
+AnalogyResult makeAnalogyModel(const std::vector<AnalogyModelPair>& pairs, const LevelSet& target,
+                               const AnalogyOptions& options, const RunContext& ctx = {});
+
+}  // namespace vdbsynth

@@ -1,0 +1,163 @@
+// Which way a texture runs: what users say about it, as directions on a surface's shell.
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/geometry/point_neighbours.h"
+#include "libvdbsynth/pipeline/analogy_steps.h"
+#include "libvdbsynth/surface/curvature_direction.h"
+#include "libvdbsynth/vdb/coord.h"
+
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/Interpolation.h>
+
+#include <cmath>
+#include <functional>
+
+namespace vdbsynth {
+namespace {
+
+constexpr float kStrokeReach = 1.5f;  // [voxels] around a stroke's place that it speaks for
+
+using Reader = std::function<Vec3d(const Vec3d& world)>;
+
+template <typename Grid>
+Reader vectorReader(const Grid& grid) {
+    return [&grid](const Vec3d& world) {
+        const auto value = openvdb::tools::BoxSampler::sample(grid.tree(), grid.worldToIndex(toVec(world)));
+        return Vec3d{double(value.x()), double(value.y()), double(value.z())};
+    };
+}
+
+template <typename Grid>
+Reader gradientReader(const Grid& grid) {
+    return [&grid](const Vec3d& world) {
+        Vec3d gradient;
+        const double step = grid.voxelSize()[0];
+        for (int axis = 0; axis < 3; ++axis) {
+            Vec3d low = world, high = world;
+            low[axis] -= step;
+            high[axis] += step;
+            const auto at = [&](const Vec3d& p) {
+                return double(openvdb::tools::BoxSampler::sample(grid.tree(), grid.worldToIndex(toVec(p))));
+            };
+            gradient[axis] = (at(high) - at(low)) / (2 * step);
+        }
+        return gradient;
+    };
+}
+
+Reader readerOf(const openvdb::GridBase& grid, const std::string& what) {
+    if (grid.isType<openvdb::Vec3SGrid>()) return vectorReader(static_cast<const openvdb::Vec3SGrid&>(grid));
+    if (grid.isType<openvdb::Vec3DGrid>()) return vectorReader(static_cast<const openvdb::Vec3DGrid&>(grid));
+    if (grid.isType<openvdb::FloatGrid>())
+        return gradientReader(static_cast<const openvdb::FloatGrid&>(grid));
+    if (grid.isType<openvdb::DoubleGrid>())
+        return gradientReader(static_cast<const openvdb::DoubleGrid&>(grid));
+    throw Error(ErrorCode::BadData, "the direction of " + what + ": grid " + grid.getName() + " holds " +
+                                        grid.valueType() + "; vectors or a float scalar are needed");
+}
+
+// Each stroke speaks for the shell around the place nearest to it.
+void addStrokes(const SurfaceShell& shell, const FieldPlace& place, const std::vector<Stroke>& strokes,
+                std::vector<Vec3f>& given) {
+    const PointNeighbours neighbours(shell.point);
+    const openvdb::math::Transform& transform = place.like->transform();
+    for (const Stroke& stroke : strokes) {
+        const Vec3d index = fromVec(transform.worldToIndex(toVec(stroke.position)));
+        const Vec3f at = cast<float>((index - place.corner) * (1 / place.step));
+        std::uint32_t nearest = 0;
+        float squared = 0;
+        neighbours.nearest(at, 1, &nearest, &squared);
+        const Vec3f direction = cast<float>(normalized(place.fromWorldDirection(stroke.direction)));
+        const Index3 middle = shell.table[nearest];
+        const int reach = int(std::ceil(kStrokeReach));
+        for (int x = -reach; x <= reach; ++x)
+            for (int y = -reach; y <= reach; ++y)
+                for (int z = -reach; z <= reach; ++z) {
+                    const std::int32_t i = shell.table.find(middle + Index3{x, y, z});
+                    if (i >= 0 && length(shell.point[std::size_t(i)] - shell.point[nearest]) <= kStrokeReach)
+                        given[std::size_t(i)] = given[std::size_t(i)] + direction;
+                }
+    }
+}
+
+Vec3d middleOfPoints(const SurfaceShell& shell, const FieldPlace& place) {
+    Vec3d low = cast<double>(shell.point.front()), high = low;
+    for (const Vec3f& p : shell.point)
+        for (int axis = 0; axis < 3; ++axis) {
+            low[axis] = std::min(low[axis], double(p[axis]));
+            high[axis] = std::max(high[axis], double(p[axis]));
+        }
+    return place.toWorld((low + high) * 0.5);
+}
+
+std::vector<Vec3f> givenDirections(const SurfaceShell& shell, const FieldPlace& place,
+                                   const DirectionSource& source, const std::string& what,
+                                   const RunContext& ctx) {
+    using Kind = DirectionSource::Kind;
+    if (source.kind == Kind::Automatic) return curvatureDirections(shell, ctx);
+    std::vector<Vec3f> given(shell.size());
+    if (source.kind == Kind::Strokes) {
+        addStrokes(shell, place, source.strokes, given);
+        return given;
+    }
+    const Vec3d middle = middleOfPoints(shell, place);
+    Reader reader = [&](const Vec3d&) { return source.axis; };
+    if (source.kind == Kind::Around) reader = [&](const Vec3d& p) { return cross(source.axis, p - middle); };
+    if (source.kind == Kind::Radial) reader = [&](const Vec3d& p) { return p - middle; };
+    if (source.kind == Kind::Grid) reader = readerOf(*source.grid, what);
+    for (std::size_t i = 0; i < shell.size(); ++i) {
+        const Vec3d direction = place.fromWorldDirection(reader(place.toWorld(cast<double>(shell.point[i]))));
+        if (std::isfinite(dot(direction, direction))) given[i] = cast<float>(direction);
+    }
+    return given;
+}
+
+}  // namespace
+
+bool parseDirection(const std::string& text, DirectionSource& source) {
+    using Kind = DirectionSource::Kind;
+    if (text == "radial" || text == "curvature") {
+        source.kind = text == "radial" ? Kind::Radial : Kind::Automatic;
+        return true;
+    }
+    const std::size_t colon = text.find(':');
+    const std::string head = text.substr(0, colon);
+    if (colon == std::string::npos || (head != "axis" && head != "around")) return false;
+    std::string tail = text.substr(colon + 1);
+    const bool back = !tail.empty() && tail[0] == '-';
+    if (back) tail.erase(0, 1);
+    if (tail != "x" && tail != "y" && tail != "z") return false;
+    source.kind = head == "axis" ? Kind::Axis : Kind::Around;
+    source.axis = {0, 0, 0};
+    source.axis[tail[0] - 'x'] = back ? -1 : 1;
+    return true;
+}
+
+Vec3d FieldPlace::toWorld(const Vec3d& voxel) const {
+    return fromVec(like->transform().indexToWorld(toVec(corner + voxel * step)));
+}
+
+Vec3d FieldPlace::fromWorldDirection(const Vec3d& direction) const {
+    const openvdb::math::Transform& transform = like->transform();
+    const openvdb::Vec3d origin = transform.indexToWorld(openvdb::Vec3d(0, 0, 0));
+    return fromVec(transform.worldToIndex(origin + toVec(direction))) * (1 / step);
+}
+
+FrameField framesOf(std::shared_ptr<const BrickField> distance, const FieldPlace& place,
+                    const DirectionSource& source, const std::string& what, const RunContext& ctx) {
+    Stage stage(ctx, "directions over " + what, 3);
+    SurfaceShell shell = surfaceShell(*distance, ctx);
+    stage.advance();
+    DirectionField directions;
+    try {
+        directions = directionField(shell, givenDirections(shell, place, source, what, ctx), ctx);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::Unusable) throw;
+        throw Error(ErrorCode::Unusable, what + ": " + error.what());
+    }
+    stage.advance();
+    SweepDistance sweep = sweepDistance(shell, directions.tangent, ctx);
+    stage.advance();
+    return FrameField(std::move(distance), std::move(shell), std::move(directions), std::move(sweep));
+}
+
+}  // namespace vdbsynth

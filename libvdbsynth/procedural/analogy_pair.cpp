@@ -1,0 +1,225 @@
+#include "libvdbsynth/procedural/analogy_pair.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/random.h"
+#include "libvdbsynth/math/trigonometry.h"
+#include "libvdbsynth/procedural/packing.h"
+#include "libvdbsynth/procedural/primitives.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace vdbsynth {
+namespace {
+
+using Shape = std::function<double(const Vec3d&)>;
+
+constexpr std::uint32_t kGroovePurpose = 0x67726f76, kPlacePurpose = 0x706c6163;
+
+BrickField fieldOf(const IndexBox& domain, const Shape& shape, const RunContext& ctx) {
+    const IndexBox box = domain.expanded(kExemplarMargin);
+    return BrickField::generate(box, ctx, [&](const IndexBox& brick, float* samples) {
+        for (int i = 0; i < BrickField::kSamples; ++i) {
+            const Index3 p = brick.min + Index3{i >> 6, (i >> 3) & 7, i & 7};
+            samples[i] = float(std::clamp(shape({double(p.x), double(p.y), double(p.z)}),
+                                          -double(kExemplarLimit), double(kExemplarLimit)));
+        }
+    });
+}
+
+AnalogyPairFields pairOf(const IndexBox& domain, const Shape& plain, const Shape& textured,
+                         const RunContext& ctx) {
+    AnalogyPairFields pair;
+    for (auto [field, shape] : {std::pair{&pair.plain, &plain}, std::pair{&pair.textured, &textured}}) {
+        field->domain = domain;
+        field->exact = false;
+        field->field = fieldOf(domain, *shape, ctx);
+    }
+    return pair;
+}
+
+// A cylinder along z, and one with grooves along it, each a little wider or deeper than the next.
+AnalogyPairFields grooves(int resolution, double feature, const RunContext& ctx) {
+    const double middle = (resolution - 1) / 2.0, radius = resolution / 2.0 - 8;
+    const int count = std::max(3, int(std::lround(2 * kPi * radius / feature)));
+    std::vector<double> ends, depths;
+    Random random(ctx.seed, 0, kGroovePurpose);
+    double sum = 0;
+    for (int i = 0; i < count; ++i) {
+        ends.push_back(sum += random.uniform(0.85, 1.15));
+        depths.push_back(0.36 * feature * random.uniform(0.9, 1.1));
+    }
+    const double first = random.uniform();
+    const auto radial = [=](const Vec3d& p) {
+        return std::sqrt((p.x - middle) * (p.x - middle) + (p.y - middle) * (p.y - middle));
+    };
+    const Shape plain = [=](const Vec3d& p) { return radial(p) - radius; };
+    const Shape grooved = [=](const Vec3d& p) {
+        const double turn = arcTangent(p.y - middle, p.x - middle) / (2 * kPi) + first;
+        const double at = (turn - std::floor(turn)) * sum;
+        const std::size_t i = std::min<std::size_t>(
+            std::size_t(std::upper_bound(ends.begin(), ends.end(), at) - ends.begin()), ends.size() - 1);
+        const double begin = i ? ends[i - 1] : 0, u = (at - begin) / (ends[i] - begin);
+        return radial(p) - radius + depths[i] * (0.5 - 0.5 * cosine(2 * kPi * u));
+    };
+    return pairOf(IndexBox::fromSize({resolution, resolution, resolution * 3 / 2}), plain, grooved, ctx);
+}
+
+// Places on a plane, one in each cell of a grid, moved a little.
+struct Places {
+    Places(int resolution, double wanted, std::uint64_t seed)
+        : count(std::max(2, int(std::lround(resolution / wanted)))), spacing(double(resolution) / count) {
+        for (int i = 0; i < count * count; ++i) {
+            Random random(seed, std::uint64_t(i), kPlacePurpose);
+            const double shift = (i / count % 2) * 0.5;  // rows half a cell apart
+            x.push_back((i / count + 0.5 + random.uniform(-0.08, 0.08)) * spacing);
+            y.push_back((i % count + 0.25 + shift + random.uniform(-0.08, 0.08)) * spacing);
+        }
+    }
+    // Offset to the nearest place, the pattern going on beyond the domain.
+    Vec3d nearest(const Vec3d& p) const {
+        Vec3d best{1e9, 1e9, 0};
+        const int row = int(std::floor(p.x / spacing)), column = int(std::floor(p.y / spacing));
+        for (int a = row - 1; a <= row + 1; ++a)
+            for (int b = column - 2; b <= column + 2; ++b) {
+                const int ra = (a % count + count) % count, rb = (b % count + count) % count;
+                const std::size_t i = std::size_t(ra * count + rb);
+                const Vec3d offset{p.x - x[i] - (a - ra) * spacing, p.y - y[i] - (b - rb) * spacing, 0};
+                if (length(offset) < length(best)) best = offset;
+            }
+        return best;
+    }
+    int count;
+    double spacing;
+    std::vector<double> x, y;
+};
+
+// A slab that goes on below, and what is made of its top.
+AnalogyPairFields slab(const std::string& kind, int resolution, double feature, const RunContext& ctx) {
+    const Places places(resolution, feature, ctx.seed);
+    const double f = places.spacing, top = std::ceil(2.2 * feature), wall = std::max(4.0, 0.4 * feature);
+    const IndexBox domain = IndexBox::fromSize({resolution, resolution, int(top + 2.2 * feature)});
+    const Shape plain = [=](const Vec3d& p) { return p.z - top; };
+    Shape textured;
+    if (kind == "spikes")
+        textured = [=](const Vec3d& p) {
+            const double share = std::clamp((p.z - top) / (0.9 * f), 0.0, 1.0);
+            const double cone = length(places.nearest(p)) - 0.36 * f * (1 - share);
+            return std::min(p.z - top, p.z > top + 0.9 * f ? p.z - top - 0.9 * f + 0.5 : cone);
+        };
+    else if (kind == "pits")
+        textured = [=](const Vec3d& p) {
+            const Vec3d offset = places.nearest(p) + Vec3d{0, 0, p.z - top};
+            return std::max(p.z - top, 0.36 * f - length(offset));
+        };
+    else if (kind == "holes")
+        textured = [=](const Vec3d& p) {
+            const double plate = std::max(p.z - top, top - wall - p.z);
+            return std::max(plate, 0.3 * f - length(places.nearest(p)));
+        };
+    else if (kind == "hollow")
+        textured = [=](const Vec3d& p) { return std::max(p.z - top, top - wall - p.z); };
+    else  // scales: each rises along x and overlaps the next
+        textured = [=](const Vec3d& p) {
+            double height = -1e9;
+            for (int back = 0; back < 2; ++back) {
+                const Vec3d offset = places.nearest({p.x - back * 0.45 * f, p.y, 0});
+                const double in = 0.62 * f - length(offset);
+                if (in > 0) height = std::max(height, 0.16 * f + 0.26 * (offset.x + back * 0.2 * f));
+            }
+            return p.z - top - std::max(height, 0.0);
+        };
+    return pairOf(domain, plain, textured, ctx);
+}
+
+// A ball, and the same with thorns that curl along z.
+AnalogyPairFields thorns(int resolution, double feature, const RunContext& ctx) {
+    const double radius = resolution / 2.0 - 6 - 0.8 * feature;
+    const Vec3d middle{(resolution - 1) / 2.0, (resolution - 1) / 2.0, (resolution - 1) / 2.0};
+    std::vector<Primitive> primitives{ball(middle, radius)};
+    const int rings = std::max(3, int(std::lround(kPi * radius / feature)));
+    for (int ring = 1; ring < rings; ++ring) {
+        const double polar = kPi * ring / rings;
+        const int count = std::max(3, int(std::lround(2 * kPi * radius * sine(polar) / feature)));
+        Random random(ctx.seed, std::uint64_t(ring), kPlacePurpose);
+        const double first = random.uniform();
+        for (int i = 0; i < count; ++i) {
+            const double turn = 2 * kPi * (i + first + random.uniform(-0.1, 0.1)) / count;
+            const Vec3d n{sine(polar) * cosine(turn), sine(polar) * sine(turn), cosine(polar)};
+            const Vec3d t = normalized(Vec3d{0, 0, 1} - n * n.z);
+            const int steps = 8;
+            Vec3d last;
+            for (int k = 0; k <= steps; ++k) {
+                const double s = double(k) / steps;
+                const Vec3d at = middle + n * (radius + 0.75 * feature * s * (1 - 0.25 * s)) +
+                                 t * (0.55 * feature * s * s);
+                const double thick = std::max(0.9, 0.2 * feature * (1 - 0.8 * s));
+                if (k > 0) primitives.push_back(capsule(last, at, thick));
+                last = at;
+            }
+        }
+    }
+    const IndexBox domain = IndexBox::fromSize({resolution, resolution, resolution});
+    AnalogyPairFields pair;
+    pair.plain.domain = pair.textured.domain = domain;
+    pair.plain.exact = pair.textured.exact = false;
+    pair.plain.field =
+        unionField({primitives.front()}, domain.expanded(kExemplarMargin), kExemplarLimit, ctx);
+    pair.textured.field = unionField(primitives, domain.expanded(kExemplarMargin), kExemplarLimit, ctx);
+    return pair;
+}
+
+// A ball, and one that is a third of a feature larger.
+AnalogyPairFields dilation(int resolution, double feature, const RunContext& ctx) {
+    const double more = feature / 3, radius = resolution / 2.0 - 6 - more;
+    Random random(ctx.seed, 0, kPlacePurpose);
+    Vec3d middle;
+    for (int axis = 0; axis < 3; ++axis) middle[axis] = (resolution - 1) / 2.0 + random.uniform(-0.5, 0.5);
+    return pairOf(
+        IndexBox::fromSize({resolution, resolution, resolution}),
+        [=](const Vec3d& p) { return length(p - middle) - radius; },
+        [=](const Vec3d& p) { return length(p - middle) - radius - more; }, ctx);
+}
+
+}  // namespace
+
+const std::vector<AnalogyPairKind>& analogyPairKinds() {
+    static const std::vector<AnalogyPairKind> kinds{
+        {"grooves", "a cylinder, and one with grooves along it", "axis:z", 10},
+        {"spikes", "a slab, and one with cones", "axis:x", 14},
+        {"pits", "a slab, and one with round pits", "axis:x", 14},
+        {"holes", "a slab, and a plate with holes through it", "axis:x", 14},
+        {"hollow", "a slab, and a plate", "axis:x", 12},
+        {"scales", "a slab, and one with overlapping scales", "axis:x", 16},
+        {"thorns", "a ball, and one with thorns that curl", "axis:z", 14},
+        {"dilation", "a ball, and a larger one", "axis:z", 12},
+    };
+    return kinds;
+}
+
+AnalogyPairFields makeAnalogyPair(const ExemplarOptions& options, const RunContext& ctx) {
+    const auto& kinds = analogyPairKinds();
+    const auto kind = std::find_if(kinds.begin(), kinds.end(),
+                                   [&](const AnalogyPairKind& k) { return k.name == options.kind; });
+    if (kind == kinds.end())
+        throw Error(ErrorCode::InvalidOption, "make " + options.kind + ": no pair has that name");
+    const double feature = options.feature > 0 ? options.feature : kind->feature;
+    requireOption(feature >= 6 && feature <= 256, "feature", std::to_string(feature), "from 6 to 256 voxels");
+    requireOption(
+        options.resolution >= 4 * feature && options.resolution <= 4096, "resolution",
+        std::to_string(options.resolution),
+        "at least four features (" + std::to_string(int(std::ceil(4 * feature))) + ") and at most 4096");
+    requireMemory(ctx, double(options.resolution) * options.resolution * options.resolution * 24,
+                  "make " + kind->name, "use a smaller --resolution");
+    Stage stage(ctx, "make " + kind->name, 1);
+    AnalogyPairFields pair = kind->name == "grooves"    ? grooves(options.resolution, feature, ctx)
+                             : kind->name == "thorns"   ? thorns(options.resolution, feature, ctx)
+                             : kind->name == "dilation" ? dilation(options.resolution, feature, ctx)
+                                                        : slab(kind->name, options.resolution, feature, ctx);
+    pair.direction = kind->direction;
+    stage.advance();
+    return pair;
+}
+
+}  // namespace vdbsynth

@@ -1,0 +1,46 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace vdbsynth {
+
+/// A feature near another.
+struct FeatureMatch {
+    std::int32_t row = -1;  ///< negative: none
+    float squared = 0;      ///< squared Euclidean distance
+};
+
+/// Nearest-neighbour search over feature vectors: a single kd-tree (FLANN's KDTreeSingleIndex, the one of its
+/// indices that repeats).
+class FeatureIndex {
+public:
+    /// @param rows  [count x dimension], count at least 1
+    /// @par Cost    time O(count log count), memory twice the rows
+    FeatureIndex(std::vector<float> rows, std::size_t dimension);
+    FeatureIndex(FeatureIndex&&) noexcept;
+    FeatureIndex& operator=(FeatureIndex&&) noexcept;
+    ~FeatureIndex();
+
+    /// A row nearer than `bound` (squared), the nearest one unless a slack allows another whose squared
+    /// distance is at most (1 + slack) times that. May be called from many threads at once.
+    /// @return row -1 where none is nearer than the bound
+    /// @par Repeats yes
+    FeatureMatch nearest(const float* feature, float bound, float slack = 0) const;
+
+    /// Squared distance to a row.
+    float squaredTo(const float* feature, std::int32_t row) const;
+    const float* row(std::int32_t number) const;
+    std::size_t size() const;
+    std::size_t dimension() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> mImpl;
+};
+
+/// The oracle: the nearest row, the first of equally near ones, by a scan.
+FeatureMatch nearestLinearly(const std::vector<float>& rows, std::size_t dimension, const float* feature);
+
+}  // namespace vdbsynth

@@ -1,0 +1,172 @@
+#include "libvdbsynth/surface/direction_field.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace vdbsynth {
+namespace {
+
+constexpr float kTooSteep = 0.17f;  // sine of 10 degrees
+constexpr float kSingular = 0.7f;   // length of the mean direction
+constexpr int kRounds = 40;         // of averaging, at every resolution
+
+Vec3f inTangentPlane(const Vec3f& direction, const Vec3f& normal) {
+    return direction - normal * dot(direction, normal);
+}
+
+// The shell, or cells of it, as a graph to diffuse on.
+struct Graph {
+    std::vector<Vec3f> normal, direction;
+    std::vector<char> fixed;
+    std::vector<std::uint32_t> begin, neighbours;
+    std::vector<std::uint32_t> parent;  // in the next coarser graph
+    std::size_t size() const { return normal.size(); }
+};
+
+// Cells of 2^3 of the finer graph's; a cell is fixed where one of its parts is.
+Graph coarser(const Graph& fine, std::vector<Index3>& places, std::vector<std::uint32_t>& parent) {
+    std::map<Index3, std::uint32_t> numbers;
+    std::vector<Index3> cells;
+    parent.resize(fine.size());
+    for (std::size_t i = 0; i < fine.size(); ++i) {
+        const Index3 cell{places[i].x >> 1, places[i].y >> 1, places[i].z >> 1};
+        const auto [entry, isNew] = numbers.try_emplace(cell, std::uint32_t(cells.size()));
+        if (isNew) cells.push_back(cell);
+        parent[i] = entry->second;
+    }
+    Graph graph;
+    graph.normal.resize(cells.size());
+    graph.direction.resize(cells.size());
+    graph.fixed.assign(cells.size(), 0);
+    std::vector<std::vector<std::uint32_t>> near(cells.size());
+    for (std::size_t i = 0; i < fine.size(); ++i) {
+        const std::uint32_t cell = parent[i];
+        graph.normal[cell] = graph.normal[cell] + fine.normal[i];
+        if (fine.fixed[i]) {
+            graph.direction[cell] = graph.direction[cell] + fine.direction[i];
+            graph.fixed[cell] = 1;
+        }
+        for (std::uint32_t k = fine.begin[i]; k < fine.begin[i + 1]; ++k)
+            if (parent[fine.neighbours[k]] != cell) near[cell].push_back(parent[fine.neighbours[k]]);
+    }
+    graph.begin.assign(1, 0);
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+        graph.normal[c] = normalized(graph.normal[c]);
+        graph.direction[c] = normalized(inTangentPlane(graph.direction[c], graph.normal[c]));
+        std::sort(near[c].begin(), near[c].end());
+        near[c].erase(std::unique(near[c].begin(), near[c].end()), near[c].end());
+        graph.neighbours.insert(graph.neighbours.end(), near[c].begin(), near[c].end());
+        graph.begin.push_back(std::uint32_t(graph.neighbours.size()));
+    }
+    places = std::move(cells);
+    return graph;
+}
+
+// Mean of a voxel's neighbours' directions, each turned into its tangent plane.
+Vec3f meanAround(const Graph& graph, std::size_t i) {
+    Vec3f sum;
+    for (std::uint32_t k = graph.begin[i]; k < graph.begin[i + 1]; ++k)
+        sum = sum + graph.direction[graph.neighbours[k]];
+    return inTangentPlane(sum, graph.normal[i]);
+}
+
+void diffuse(Graph& graph, const RunContext& ctx) {
+    std::vector<Vec3f> next(graph.size());
+    for (int round = 0; round < kRounds; ++round) {
+        parallelFor(ctx, graph.size(), 4096, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                next[i] = graph.fixed[i] ? graph.direction[i]
+                                         : normalized(graph.direction[i] + meanAround(graph, i));
+        });
+        graph.direction.swap(next);
+    }
+}
+
+// Coarse to fine; on each the coarser one's directions are what unknown places begin with.
+void diffuseAll(Graph& graph, std::vector<Index3> places, const RunContext& ctx) {
+    const bool open = std::any_of(graph.fixed.begin(), graph.fixed.end(), [](char f) { return !f; });
+    if (!open) return;
+    if (graph.size() > 64) {
+        std::vector<std::uint32_t> parent;
+        Graph coarse = coarser(graph, places, parent);
+        if (coarse.size() < graph.size()) {
+            diffuseAll(coarse, std::move(places), ctx);
+            for (std::size_t i = 0; i < graph.size(); ++i)
+                if (!graph.fixed[i])
+                    graph.direction[i] =
+                        normalized(inTangentPlane(coarse.direction[parent[i]], graph.normal[i]));
+        }
+    }
+    diffuse(graph, ctx);
+}
+
+// One place of each connected part of the voxels that are marked.
+std::vector<Vec3f> partsOf(const SurfaceShell& shell, std::vector<char> marked) {
+    std::vector<Vec3f> places;
+    std::vector<std::uint32_t> open;
+    for (std::uint32_t i = 0; i < shell.size(); ++i) {
+        if (!marked[i]) continue;
+        places.push_back(shell.point[i]);
+        marked[i] = 0;
+        open.assign(1, i);
+        while (!open.empty()) {
+            const std::uint32_t at = open.back();
+            open.pop_back();
+            for (std::uint32_t k = shell.begin[at]; k < shell.begin[at + 1]; ++k) {
+                const std::uint32_t j = shell.neighbours[k];
+                if (!marked[j]) continue;
+                marked[j] = 0;
+                open.push_back(j);
+            }
+        }
+    }
+    return places;
+}
+
+}  // namespace
+
+DirectionField directionField(const SurfaceShell& shell, const std::vector<Vec3f>& given,
+                              const RunContext& ctx) {
+    Graph graph;
+    graph.normal = shell.normal;
+    graph.begin = shell.begin;
+    graph.neighbours = shell.neighbours;
+    graph.direction.resize(shell.size());
+    graph.fixed.assign(shell.size(), 0);
+    DirectionField field;
+    for (std::size_t i = 0; i < shell.size(); ++i) {
+        const Vec3f flat = inTangentPlane(normalized(given[i]), shell.normal[i]);
+        if (!(length(flat) > kTooSteep)) continue;
+        graph.direction[i] = normalized(flat);
+        graph.fixed[i] = 1;
+        ++field.known;
+    }
+    if (field.known == 0)
+        throw Error(
+            ErrorCode::Unusable,
+            "--direction: says nothing about any place of the surface; it is along the normal everywhere, "
+            "or nowhere near the model");
+    diffuseAll(graph, shell.table.voxels(), ctx);
+    field.tangent.resize(shell.size());
+    std::vector<char> singular(shell.size(), 0);
+    parallelFor(ctx, shell.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vec3f& n = shell.normal[i];
+            Vec3f t = inTangentPlane(graph.direction[i], n);
+            // A part of the surface that nothing reaches takes any tangent.
+            if (length(t) < 1e-3f)
+                t = inTangentPlane(std::abs(n.x) < 0.7f ? Vec3f{1, 0, 0} : Vec3f{0, 1, 0}, n);
+            field.tangent[i] = normalized(t);
+            const Vec3f sum = graph.direction[i] + meanAround(graph, i);
+            singular[i] = length(sum) < kSingular * float(1 + shell.begin[i + 1] - shell.begin[i]);
+        }
+    });
+    field.singularities = partsOf(shell, std::move(singular));
+    return field;
+}
+
+}  // namespace vdbsynth

@@ -1,0 +1,69 @@
+#pragma once
+#include "libvdbsynth/grid/voxel_table.h"
+#include "libvdbsynth/surface/frame_field.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace vdbsynth {
+
+/// The voxels of one model at one level of the pyramid, each with its frame. [voxels of the level]
+struct AnalogyVoxels {
+    VoxelTable table;
+    std::vector<Frame> frame;
+    std::vector<float> sweep;  ///< [voxels of the finest level]
+};
+
+/// A field at every level, finest first: distances in voxels of the level, and the densities
+/// clamp(1/2 - d/2, 0, 1) that features are made of.
+struct AnalogyPyramid {
+    std::vector<BrickField> distance, density;
+};
+
+/// @par Repeats same bits for any number of threads
+AnalogyPyramid analogyPyramid(const BrickField& distance, int levels, const RunContext& ctx);
+
+inline float densityOf(float distance) {
+    const float d = 0.5f - 0.5f * distance;
+    return d < 0 ? 0.f : d > 1 ? 1.f : d;
+}
+BrickField densityField(const BrickField& distance, const RunContext& ctx);
+
+/// A level's place in the finest one: the middles of their boxes' first voxels are half a coarse voxel apart.
+inline Vec3f toFinest(const Vec3f& p, int level) {
+    const float scale = float(1 << level), shift = (scale - 1) / 2;
+    return {p.x * scale + shift, p.y * scale + shift, p.z * scale + shift};
+}
+
+/// Frames and sweep distances of voxels; those near no surface voxel take their neighbours'.
+/// @param aligned  false: every frame is that of the grid's axes, in the order of slices (the naive variant)
+/// @par Repeats same bits for any number of threads
+AnalogyVoxels analogyVoxels(VoxelTable table, const FrameField& frames, int level, bool aligned,
+                            const RunContext& ctx);
+
+/// What textured models are at each depth of the plain ones, and so where a target has to be synthesised at
+/// all: where depths within a neighbourhood's radius do not agree. By whole voxels of distance.
+class DepthClasses {
+public:
+    enum class Kind : std::uint8_t { Unseen, Full, Empty, Mixed };
+
+    explicit DepthClasses(int radius);
+    /// Counts what a textured model is at a depth. Outside of it `textured` is at least 1, inside at most -1.
+    void add(float plain, float textured);
+    /// Works out the classes; depths beyond all that were seen are like the nearest seen.
+    void finish();
+
+    /// True where voxels at this depth have to be synthesised.
+    bool open(float plain) const { return mOpen[index(plain)]; }
+    bool full(float plain) const { return mKind[index(plain)] == Kind::Full; }
+
+private:
+    static constexpr int kDeepest = 512;
+    static std::size_t index(float plain);
+    int mRadius;
+    std::vector<Kind> mKind;
+    std::vector<char> mOpen;
+};
+
+}  // namespace vdbsynth

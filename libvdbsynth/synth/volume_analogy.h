@@ -1,0 +1,72 @@
+#pragma once
+#include "libvdbsynth/surface/frame_field.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace vdbsynth {
+
+/// A model without and with a texture, over one box that begins at 0, distances [voxels].
+struct AnalogyPair {
+    std::shared_ptr<const BrickField> plain, textured;
+    const FrameField* frames = nullptr;  ///< of the plain model; its finest voxels
+    IndexBox inner;                      ///< what may be copied: features do not reach out of it
+};
+
+struct VolumeAnalogyOptions {
+    int levels = 3;       ///< of the pyramid, 1..6
+    int sweeps = 2;       ///< over the voxels of every level, 1..10
+    int half = 2;         ///< a neighbourhood is (2 half + 1)^3 samples, 1..4
+    int coarseHalf = 1;   ///< the same at the next coarser level, 1..3
+    int components = 24;  ///< principal axes that features are compared along, 4..256
+    /// How much farther in feature space a voxel may lie that goes on from what a neighbour copied, before
+    /// the nearest of all is taken; at level l this counts 2^-l times [ashikhmin2001; hertzmann2001, 3.2].
+    /// 0..100
+    double coherence = 0.5;
+    double slack = 1;     ///< FeatureIndex::nearest's; 0: exact
+    bool aligned = true;  ///< false: the paper's naive variant, neighbourhoods along the grid's axes
+};
+
+/// What one level took.
+struct AnalogyLevelStats {
+    std::size_t voxels = 0;      ///< that were synthesised
+    std::size_t waves = 0;       ///< of voxels that were worked out side by side
+    std::size_t features = 0;    ///< of the pairs
+    std::size_t components = 0;  ///< axes used
+    double explained = 0;        ///< share of the features' variance along them
+    double coherent = 0;         ///< share of voxels in the last sweep that went on from a neighbour
+    double meanDistance = 0;     ///< root of the mean squared feature distance in the last sweep
+};
+
+/// A voxel of the target and the one it was copied from.
+struct AnalogySource {
+    Index3 to, from;
+    std::int32_t pair = 0;
+};
+
+struct VolumeAnalogyResult {
+    BrickField distance;  ///< [voxels] its zero level is the result; no valid distance elsewhere
+    std::vector<AnalogySource> sources;
+    std::vector<AnalogyLevelStats> levels;  ///< coarsest first
+};
+
+/// B' such that plain : textured = target : B' [bhat2004]: coarse to fine, voxels in the order of the sweep
+/// distance, each takes the value of the voxel of the textured model whose feature is nearest.
+/// Beyond the paper, or left open by it:
+///  - which depths have to be worked out at all is read from the pairs (DepthClasses);
+///  - voxels whose sweep distances are within half a voxel form a wave: they read what was there before it,
+///  so
+///    a wave runs on all threads and the result does not depend on their number;
+///  - candidates that go on from what neighbours copied come first, and bound the search for the rest;
+///  - the value copied is read where the source would lie if its depth were exactly the target's, and after
+///    a level's last sweep each voxel takes the mean of what its neighbours' sources say about its place.
+/// @param target   box begins at 0, distances [voxels], wide enough for what is added
+/// @throw Error InvalidOption, Unusable (a pair too small for the levels), Cancelled
+/// @par Cost    O(voxels near the surface * (samples of a feature + candidates)) a sweep
+/// @par Repeats same bits for any number of threads
+VolumeAnalogyResult makeAnalogy(const std::vector<AnalogyPair>& pairs, const BrickField& target,
+                                const FrameField& frames, const VolumeAnalogyOptions& options,
+                                const RunContext& ctx = {});
+
+}  // namespace vdbsynth

@@ -1,0 +1,45 @@
+#include "tools/vdb_synth/map_place.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/io/path.h"
+
+#include <algorithm>
+
+namespace vdbsynth::cli {
+
+Option mapOption() {
+    return {"source-map",
+            "[FILE.vdb]",
+            "also write the source map, what was copied from where (of synth for repeat); without "
+            "FILE into the .vdb output",
+            false,
+            0,
+            ".vdb"};
+}
+
+bool anyVdb(const std::vector<std::string>& paths) {
+    return std::any_of(paths.begin(), paths.end(),
+                       [](const std::string& path) { return extensionOf(path) == "vdb"; });
+}
+
+MapPlace mapPlaceOf(const Arguments& arguments, const std::vector<std::string>& outputs) {
+    MapPlace place{arguments.text("source-map"), false};
+    place.inside = place.path == kNoValue;
+    if (place.path.empty()) return place;
+    requireOption(place.inside || extensionOf(place.path) == "vdb", "source-map", place.path, "a .vdb file");
+    if (place.inside && !anyVdb(outputs))
+        throw Error(ErrorCode::InvalidOption,
+                    "--source-map: without a file it goes into a .vdb output, and there is none; give "
+                    "--source-map FILE.vdb");
+    return place;
+}
+
+void writeWithMap(Run& run, const LevelSet& model, const std::vector<GridPtr>& map, const MapPlace& place,
+                  const std::vector<std::string>& paths, ModelOutputOptions outputs) {
+    outputs.metadata = run.metadata();
+    if (place.inside) outputs.extraGrids = map;
+    writeModel(model, paths, outputs, run.outputs(), run.context);
+    if (!place.path.empty() && !place.inside) writeVdb(run.outputs().add(place.path), map, outputs.metadata);
+}
+
+}  // namespace vdbsynth::cli

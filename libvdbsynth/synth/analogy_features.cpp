@@ -7,6 +7,8 @@
 namespace vdbsynth {
 namespace {
 
+constexpr float kDepthWeight = 1;  // of a voxel of depth beside a sample that differs from empty to full
+
 // Samples of the box [low, high] of steps along the frame's axes; t slowest, n fastest.
 float* sampleCube(const BrickField& field, const Vec3f& at, const Frame& frame, int half, int lastAlong,
                   float* out) {
@@ -20,9 +22,12 @@ float* sampleCube(const BrickField& field, const Vec3f& at, const Frame& frame, 
 
 }  // namespace
 
-void sampleCausal(const FeatureShape& shape, const BrickField& textured, const Vec3f& at, const Frame& frame,
-                  float* out) {
-    sampleCube(textured, at, frame, shape.half, -1, out);
+void sampleMade(const FeatureShape& shape, const BrickField& textured, const Vec3f& at, const Frame& frame,
+                float* out) {
+    float* end = sampleCube(textured, at, frame, shape.half, shape.causal ? -1 : shape.half, out);
+    if (shape.causal) return;
+    float* middle = out + (end - out) / 2;
+    std::copy(middle + 1, end, middle);
 }
 
 void sampleRest(const FeatureShape& shape, const FeatureFields& fields, const Vec3f& at, const Frame& frame,
@@ -35,7 +40,7 @@ void sampleRest(const FeatureShape& shape, const FeatureFields& fields, const Ve
 }
 
 ReducedFeatures::ReducedFeatures(const FeatureShape& shape, const PrincipalAxes& axes)
-    : mCausal(shape.causal()),
+    : mMade(shape.made()),
       mLength(shape.size()),
       mCount(axes.count),
       mAxes(mLength * mCount),
@@ -53,14 +58,15 @@ void ReducedFeatures::add(std::size_t begin, std::size_t end, const float* sampl
     }
 }
 
-void ReducedFeatures::addCausal(const float* causal, const float* rest, float* out) const {
-    std::copy(rest, rest + mCount, out);
-    add(0, mCausal, causal, out);
+void ReducedFeatures::addMade(const float* made, const float* rest, float* out) const {
+    std::copy(rest, rest + count(), out);
+    add(0, mMade, made, out);
 }
 
-void ReducedFeatures::ofRest(const float* rest, float* out) const {
+void ReducedFeatures::ofRest(const float* rest, float depth, float* out) const {
     std::fill(out, out + mCount, 0.f);
-    add(mCausal, mLength, rest, out);
+    add(mMade, mLength, rest, out);
+    out[mCount] = kDepthWeight * depth;
 }
 
 }  // namespace vdbsynth

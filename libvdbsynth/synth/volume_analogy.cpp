@@ -144,13 +144,13 @@ private:
         const PairLevels& of = mLevels[std::size_t(row.pair)];
         const std::size_t l = std::size_t(mLevel);
         const Vec3f at = middleOf(voxel(row));
-        sampleCausal(mShape, of.textured.density[l], at, frame(row), out);
+        sampleMade(mShape, of.textured.density[l], at, frame(row), out);
         FeatureFields fields{&of.plain.density[l], nullptr, nullptr};
         if (mShape.coarse) {
             fields.coarsePlain = &of.plain.density[l + 1];
             fields.coarseTextured = &of.textured.density[l + 1];
         }
-        sampleRest(mShape, fields, at, frame(row), out + mShape.causal());
+        sampleRest(mShape, fields, at, frame(row), out + mShape.made());
     }
 
     void learn(const VolumeAnalogyOptions& options, const RunContext& ctx) {
@@ -168,8 +168,8 @@ private:
             std::vector<float> feature(size), rest(count);
             for (std::size_t r = begin; r < end; ++r) {
                 sample(r, feature.data());
-                mReduced.ofRest(feature.data() + mShape.causal(), rest.data());
-                mReduced.addCausal(feature.data(), rest.data(), features.data() + r * count);
+                mReduced.ofRest(feature.data() + mShape.made(), plainAt(mRows[r]), rest.data());
+                mReduced.addMade(feature.data(), rest.data(), features.data() + r * count);
             }
         });
         mIndex.emplace(std::move(features), count);
@@ -444,7 +444,8 @@ private:
             std::vector<float> rest(mShape.rest());
             for (std::size_t i = first; i < last; ++i) {
                 sampleRest(mShape, fields, middleOf(mVoxels.table[i]), mVoxels.frame[i], rest.data());
-                mTraining.reduced().ofRest(rest.data(), mRest.data() + i * count);
+                mTraining.reduced().ofRest(rest.data(), mPlain.inside(mVoxels.table[i]),
+                                           mRest.data() + i * count);
             }
         });
     }
@@ -452,8 +453,8 @@ private:
     void runWave(std::size_t first, std::size_t last) {
         mFound.resize(last - first);
         parallelFor(mContext, last - first, 64, [&](std::size_t begin, std::size_t end) {
-            std::vector<float> causal(mShape.causal()), feature(mTraining.reduced().count());
-            for (std::size_t k = begin; k < end; ++k) mFound[k] = match(mOrder[first + k], causal, feature);
+            std::vector<float> made(mShape.made()), feature(mTraining.reduced().count());
+            for (std::size_t k = begin; k < end; ++k) mFound[k] = match(mOrder[first + k], made, feature);
         });
         for (std::size_t k = 0; k < mFound.size(); ++k) {
             const std::uint32_t i = mOrder[first + k];
@@ -472,10 +473,10 @@ private:
         char coherent;
     };
 
-    Found match(std::uint32_t i, std::vector<float>& causal, std::vector<float>& feature) const {
+    Found match(std::uint32_t i, std::vector<float>& made, std::vector<float>& feature) const {
         const FeatureIndex& index = mTraining.index();
-        sampleCausal(mShape, mDensity, middleOf(mVoxels.table[i]), mVoxels.frame[i], causal.data());
-        mTraining.reduced().addCausal(causal.data(), mRest.data() + i * feature.size(), feature.data());
+        sampleMade(mShape, mDensity, middleOf(mVoxels.table[i]), mVoxels.frame[i], made.data());
+        mTraining.reduced().addMade(made.data(), mRest.data() + i * feature.size(), feature.data());
         FeatureMatch best = bestCandidate(i, feature.data());
         // Farther than what goes on from a neighbour, the nearest of all is not worth a break.
         const float more = 1 + float(mOptions.coherence) / float(1 << mLevel);
@@ -600,7 +601,7 @@ VolumeAnalogyResult makeAnalogy(const std::vector<AnalogyPair>& pairs, const Bri
     VolumeAnalogyResult result;
     std::optional<Made> made;
     for (int l = options.levels - 1; l >= 0; --l) {
-        const FeatureShape shape{options.half, options.coarseHalf, l + 1 < options.levels};
+        const FeatureShape shape{options.half, options.coarseHalf, options.causal, l + 1 < options.levels};
         const Training training(pairs, levels, l, shape, options, ctx);
         Level level(training, plain, frames, l, shape, made ? &*made : nullptr, options, ctx);
         result.levels.push_back(level.run());

@@ -25,6 +25,7 @@ struct VolumeAnalogyOptions {
     /// 0..100
     double coherence = 0.5;
     double slack = 1;     ///< FeatureIndex::nearest's; 0: exact
+    bool causal = false;  ///< true: of what is made only what lies behind a voxel counts, as in the paper
     bool aligned = true;  ///< false: the paper's naive variant, neighbourhoods along the grid's axes
 };
 

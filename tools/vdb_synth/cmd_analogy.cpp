@@ -32,6 +32,7 @@ AnalogyOptions parseOptions(const Arguments& arguments) {
     synthesis.components = arguments.whole("components", 24, 4, 256);
     synthesis.coherence = arguments.real("coherence", 0.5, 0, 100);
     if (arguments.has("exact")) synthesis.slack = 0;
+    synthesis.causal = arguments.has("causal");
     synthesis.aligned = !arguments.has("naive");
     options.scale = arguments.real("scale", 1, 0.25, 4);
     options.strength = arguments.real("strength", 1, 0, 1);
@@ -172,6 +173,7 @@ const Command kAnalogy{
      {"components", "N", "numbers that a neighbourhood is reduced to, 4 to 256, default 24"},
      {"coherence", "K", "how much going on from a neighbour counts over the best match, default 0.5"},
      {"exact", "", "the best match exactly, among reduced features (slower)"},
+     {"causal", "", "of what is made only what lies behind a voxel counts, as in the paper"},
      {"naive", "",
       "neighbourhoods along the grid's axes, as the paper's first variant: for blur and the like"},
      {"write-directions", "", "also write the direction field into .vdb outputs, as `direction`"},

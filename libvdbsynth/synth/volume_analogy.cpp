@@ -30,8 +30,11 @@ Vec3f middleOf(const Index3& v) {
 Vec3f turned(const Frame& from, const Frame& to, const Vec3f& v) {
     return to.t * dot(from.t, v) + to.n * dot(from.n, v) + to.b * dot(from.b, v);
 }
+// Places are never far below 0, and rounding by a library call is a tenth of a sweep.
 Index3 nearestVoxel(const Vec3f& p) {
-    return {int(std::lround(p.x)), int(std::lround(p.y)), int(std::lround(p.z))};
+    constexpr int kUp = 1024;
+    const auto round = [](float v) { return int(v + (float(kUp) + 0.5f)) - kUp; };
+    return {round(p.x), round(p.y), round(p.z)};
 }
 
 // One pair at all levels.
@@ -326,7 +329,8 @@ public:
                     std::size_t(mOptions.sweeps) * waves.size());
         for (int sweep = 0; sweep < mOptions.sweeps; ++sweep)
             for (std::size_t w = 0; w + 1 < waves.size(); ++w) {
-                runWave(waves[w], waves[w + 1]);
+                ++mNow;
+                runWave(waves[w], waves[w + 1], sweep == 0);
                 stage.advance();
             }
         double squares = 0;
@@ -384,6 +388,8 @@ private:
         mSource.assign(count, -1);
         mSquared.assign(count, 0);
         mCoherent.assign(count, 0);
+        mChanged.assign(count, 0);
+        mWorkedOut.assign(count, 0);
         if (mCoarser)
             each(1024, [&](std::size_t i) { mSource[i] = inherited(i); });
         else
@@ -450,40 +456,68 @@ private:
         });
     }
 
-    void runWave(std::size_t first, std::size_t last) {
+    void runWave(std::size_t first, std::size_t last, bool searched) {
         mFound.resize(last - first);
         parallelFor(mContext, last - first, 64, [&](std::size_t begin, std::size_t end) {
             std::vector<float> made(mShape.made()), feature(mTraining.reduced().count());
-            for (std::size_t k = begin; k < end; ++k) mFound[k] = match(mOrder[first + k], made, feature);
+            for (std::size_t k = begin; k < end; ++k) {
+                const std::uint32_t i = mOrder[first + k];
+                mFound[k] = searched || changedAround(i) ? match(i, searched, made, feature) : Found{};
+            }
         });
         for (std::size_t k = 0; k < mFound.size(); ++k) {
+            if (mFound[k].row < 0) continue;
             const std::uint32_t i = mOrder[first + k];
-            mSource[i] = mFound[k].row;
+            mWorkedOut[i] = mNow;
             mSquared[i] = mFound[k].squared;
+            if (mSource[i] == mFound[k].row && !searched) continue;
             mCoherent[i] = mFound[k].coherent;
+            if (mSource[i] != mFound[k].row) mChanged[i] = mNow;
+            mSource[i] = mFound[k].row;
             const float distance = std::clamp(mFound[k].distance, -kFar, kFar), density = densityOf(distance);
             mDistance.writeBox(mVoxels.table[i], {1, 1, 1}, &distance);
             mDensity.writeBox(mVoxels.table[i], {1, 1, 1}, &density);
         }
     }
 
+    // Whether one of a voxel's neighbours has another source than when it was last worked out; if none has,
+    // it would find again what it has.
+    bool changedAround(std::uint32_t i) const {
+        for (int k = 0; k < 27; ++k) {
+            const std::int32_t j =
+                mVoxels.table.find(mVoxels.table[i] + Index3{k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1});
+            if (j >= 0 && mChanged[std::size_t(j)] >= mWorkedOut[i]) return true;
+        }
+        return false;
+    }
+
     struct Found {
-        std::int32_t row;
-        float squared, distance;
-        char coherent;
+        std::int32_t row = -1;
+        float squared = 0, distance = 0;
+        char coherent = 0;
     };
 
-    Found match(std::uint32_t i, std::vector<float>& made, std::vector<float>& feature) const {
+    Found match(std::uint32_t i, bool searched, std::vector<float>& made, std::vector<float>& feature) const {
         const FeatureIndex& index = mTraining.index();
         sampleMade(mShape, mDensity, middleOf(mVoxels.table[i]), mVoxels.frame[i], made.data());
         mTraining.reduced().addMade(made.data(), mRest.data() + i * feature.size(), feature.data());
         FeatureMatch best = bestCandidate(i, feature.data());
-        // Farther than what goes on from a neighbour, the nearest of all is not worth a break.
-        const float more = 1 + float(mOptions.coherence) / float(1 << mLevel);
-        const float bound = best.row < 0 ? kOutside : best.squared / (more * more);
-        const FeatureMatch nearest = index.nearest(feature.data(), bound, float(mOptions.slack));
-        Found found{best.row, best.squared, 0, 1};
-        if (nearest.row >= 0) found = {nearest.row, nearest.squared, 0, 0};
+        Found found;
+        found.row = best.row;
+        found.squared = best.squared;
+        found.coherent = 1;
+        // Later sweeps settle what the first one found; only what has no candidate searches again.
+        if (searched || best.row < 0) {
+            // Farther than what goes on from a neighbour, the nearest of all is not worth a break.
+            const float more = 1 + float(mOptions.coherence) / float(1 << mLevel);
+            const float bound = best.row < 0 ? kOutside : best.squared / (more * more);
+            const FeatureMatch nearest = index.nearest(feature.data(), bound, float(mOptions.slack));
+            if (nearest.row >= 0) {
+                found.row = nearest.row;
+                found.squared = nearest.squared;
+                found.coherent = 0;
+            }
+        }
         found.distance = readThrough(i, found.row, mVoxels.table[i]);
         return found;
     }
@@ -566,6 +600,8 @@ private:
     std::vector<std::int32_t> mSource;
     std::vector<float> mSquared;
     std::vector<char> mCoherent;
+    std::uint32_t mNow = 0;                           // waves so far
+    std::vector<std::uint32_t> mChanged, mWorkedOut;  // the wave in which each voxel last did
     std::vector<float> mRest;
     std::vector<std::uint32_t> mOrder;
     std::vector<Found> mFound;

@@ -24,7 +24,7 @@ struct VolumeAnalogyOptions {
     /// the nearest of all is taken; at level l this counts 2^-l times [ashikhmin2001; hertzmann2001, 3.2].
     /// 0..100
     double coherence = 0.5;
-    double slack = 1;     ///< FeatureIndex::nearest's; 0: exact
+    double slack = 4;     ///< FeatureIndex::nearest's; 0: exact
     bool causal = false;  ///< true: of what is made only what lies behind a voxel counts, as in the paper
     bool aligned = true;  ///< false: the paper's naive variant, neighbourhoods along the grid's axes
 };
@@ -36,7 +36,7 @@ struct AnalogyLevelStats {
     std::size_t features = 0;    ///< of the pairs
     std::size_t components = 0;  ///< axes used
     double explained = 0;        ///< share of the features' variance along them
-    double coherent = 0;         ///< share of voxels in the last sweep that went on from a neighbour
+    double coherent = 0;         ///< share of voxels whose source goes on from a neighbour's
     double meanDistance = 0;     ///< root of the mean squared feature distance in the last sweep
 };
 

@@ -282,8 +282,8 @@ AnalogyResult makeAnalogyModel(const std::vector<AnalogyModelPair>& pairs, const
                     "models of the pair lie on each other");
         result.reach = std::max(result.reach, reach);
     }
-    const int radius = (options.synthesis.half + 2)
-                       << (std::max(1, std::min(options.synthesis.levels, 6)) - 1);
+    const int levels = options.synthesis.levels == 0 ? 3 : std::clamp(options.synthesis.levels, 1, 6);
+    const int radius = (options.synthesis.half + 2) << (levels - 1);
     const int band = int(std::ceil(result.reach)) + radius + 2;
     const CutFaces cut = facesTouched(target);
     const IndexBox box = grown(target.domain, cut, band);

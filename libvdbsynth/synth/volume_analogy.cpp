@@ -612,7 +612,7 @@ void checkOptions(const VolumeAnalogyOptions& options) {
         requireOption(value >= low && value <= high, name, std::to_string(value),
                       "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
     };
-    whole(options.levels, 1, 6, "levels");
+    whole(options.levels, 0, 6, "levels");
     whole(options.sweeps, 0, 10, "sweeps");
     whole(options.half, 1, 4, "neighbourhood");
     whole(options.coarseHalf, 1, 3, "coarse-neighbourhood");
@@ -625,10 +625,48 @@ void checkOptions(const VolumeAnalogyOptions& options) {
 
 }  // namespace
 
+namespace {
+
+// Volume that one of two models has and the other has not, in voxels of the finest level.
+double textureOf(const BrickField& plain, const BrickField& textured, int level) {
+    const Index3 size = plain.box().size();
+    std::vector<float> a(std::size_t(size.y) * std::size_t(size.z)), b(a.size());
+    double sum = 0;
+    for (int x = 0; x < size.x; ++x) {
+        plain.readBox({x, 0, 0}, {1, size.y, size.z}, a.data());
+        textured.readBox({x, 0, 0}, {1, size.y, size.z}, b.data());
+        for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] < 0) != (b[i] < 0);
+    }
+    return sum * double(1 << (3 * level));
+}
+
+}  // namespace
+
+int usefulLevels(const std::vector<AnalogyPair>& pairs, const RunContext& ctx) {
+    constexpr int kMost = 3;
+    std::array<double, kMost> sums{};
+    for (const AnalogyPair& pair : pairs) {
+        const AnalogyPyramid plain = analogyPyramid(*pair.plain, kMost, ctx),
+                             textured = analogyPyramid(*pair.textured, kMost, ctx);
+        for (int l = 0; l < kMost; ++l)
+            sums[std::size_t(l)] +=
+                textureOf(plain.distance[std::size_t(l)], textured.distance[std::size_t(l)], l);
+    }
+    int levels = 1;
+    while (levels < kMost && sums[std::size_t(levels)] >= kHeld * sums[0]) ++levels;
+    message(ctx, MessageLevel::Detail,
+            "coarser levels hold " + std::to_string(sums[1] / std::max(sums[0], 1.0)) + " and " +
+                std::to_string(sums[2] / std::max(sums[0], 1.0)) +
+                " of the texture: " + std::to_string(levels) + " levels");
+    return levels;
+}
+
 VolumeAnalogyResult makeAnalogy(const std::vector<AnalogyPair>& pairs, const BrickField& target,
-                                const FrameField& frames, const VolumeAnalogyOptions& options,
+                                const FrameField& frames, const VolumeAnalogyOptions& given,
                                 const RunContext& ctx) {
-    checkOptions(options);
+    checkOptions(given);
+    VolumeAnalogyOptions options = given;
+    if (options.levels == 0) options.levels = usefulLevels(pairs, ctx);
     std::vector<PairLevels> levels;
     for (const AnalogyPair& pair : pairs)
         levels.push_back({analogyPyramid(*pair.plain, options.levels, ctx),

@@ -25,11 +25,11 @@ int halfOf(const Arguments& arguments, const std::string& name, int fallback, in
 AnalogyOptions parseOptions(const Arguments& arguments) {
     AnalogyOptions options;
     VolumeAnalogyOptions& synthesis = options.synthesis;
-    synthesis.levels = arguments.whole("levels", 3, 1, 6);
+    synthesis.levels = arguments.whole("levels", 0, 1, 6);
     synthesis.sweeps = arguments.whole("sweeps", 2, 0, 10);
     synthesis.half = halfOf(arguments, "samples", 2, 4);
     synthesis.coarseHalf = halfOf(arguments, "coarse-samples", 1, 3);
-    synthesis.components = arguments.whole("components", 24, 4, 256);
+    synthesis.components = arguments.whole("components", 16, 4, 256);
     synthesis.coherence = arguments.real("coherence", 0.5, 0, 100);
     if (arguments.has("exact")) synthesis.slack = 0;
     synthesis.causal = arguments.has("causal");
@@ -166,11 +166,11 @@ const Command kAnalogy{
      {"scale", "S", "of the texture: 2 is twice as large in B's voxels, 0.25 to 4, default 1"},
      {"strength", "T", "0 to 1: how far B becomes the result, default 1"},
      {"mask", "FILE", "where: a grid of values from 0 to 1, or any model, inside which the texture goes"},
-     {"levels", "N", "levels of the pyramid, 1 to 6, default 3"},
+     {"levels", "N", "levels of the pyramid, 1 to 6; default as many, at most 3, as still hold the texture"},
      {"sweeps", "N", "over every level, 1 to 10, default 2"},
      {"samples", "N", "side of a neighbourhood in samples, one a voxel: 3, 5 (default), 7 or 9"},
      {"coarse-samples", "N", "the same at the next coarser level: 3 (default), 5 or 7"},
-     {"components", "N", "numbers that a neighbourhood is reduced to, 4 to 256, default 24"},
+     {"components", "N", "numbers that a neighbourhood is reduced to, 4 to 256, default 16"},
      {"coherence", "K", "how much going on from a neighbour counts over the best match, default 0.5"},
      {"exact", "", "the best match exactly, among reduced features (slower)"},
      {"causal", "", "of what is made only what lies behind a voxel counts, as in the paper"},

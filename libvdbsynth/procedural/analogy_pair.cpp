@@ -98,7 +98,9 @@ struct Places {
 // A slab that goes on below, and what is made of its top.
 AnalogyPairFields slab(const std::string& kind, int resolution, double feature, const RunContext& ctx) {
     const Places places(resolution, feature, ctx.seed);
-    const double f = places.spacing, top = std::ceil(2.2 * feature), wall = std::max(4.0, 0.4 * feature);
+    Random random(ctx.seed, 1, kPlacePurpose);
+    const double f = places.spacing, top = std::ceil(2.2 * feature),
+                 wall = std::max(4.0, 0.4 * feature) + random.uniform(-0.4, 0.4);
     const IndexBox domain = IndexBox::fromSize({resolution, resolution, int(top + 2.2 * feature)});
     const Shape plain = [=](const Vec3d& p) { return p.z - top; };
     Shape textured;

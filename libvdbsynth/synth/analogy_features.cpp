@@ -54,12 +54,13 @@ private:
 
 // Samples of the cube of steps along the frame's axes, up to lastAlong along t; t slowest, n fastest.
 float* sampleCube(const BrickField& field, const Vec3f& at, const Frame& frame, int half, int lastAlong,
-                  float* out) {
+                  bool middleToo, float* out) {
     const Window window(field, at, half);
     for (int t = -half; t <= lastAlong; ++t)
         for (int b = -half; b <= half; ++b) {
             const Vec3f row = at + frame.t * float(t) + frame.b * float(b);
-            for (int n = -half; n <= half; ++n) *out++ = window.at(row + frame.n * float(n));
+            for (int n = -half; n <= half; ++n)
+                if (middleToo || t != 0 || b != 0 || n != 0) *out++ = window.at(row + frame.n * float(n));
         }
     return out;
 }
@@ -68,19 +69,16 @@ float* sampleCube(const BrickField& field, const Vec3f& at, const Frame& frame, 
 
 void sampleMade(const FeatureShape& shape, const BrickField& textured, const Vec3f& at, const Frame& frame,
                 float* out) {
-    float* end = sampleCube(textured, at, frame, shape.half, shape.causal ? -1 : shape.half, out);
-    if (shape.causal) return;
-    float* middle = out + (end - out) / 2;
-    std::copy(middle + 1, end, middle);
+    sampleCube(textured, at, frame, shape.half, shape.causal ? -1 : shape.half, false, out);
 }
 
 void sampleRest(const FeatureShape& shape, const FeatureFields& fields, const Vec3f& at, const Frame& frame,
                 float* out) {
-    out = sampleCube(*fields.plain, at, frame, shape.half, shape.half, out);
+    out = sampleCube(*fields.plain, at, frame, shape.half, shape.half, true, out);
     if (!shape.coarse) return;
     const Vec3f coarse{at.x / 2 - 0.25f, at.y / 2 - 0.25f, at.z / 2 - 0.25f};
-    out = sampleCube(*fields.coarseTextured, coarse, frame, shape.coarseHalf, shape.coarseHalf, out);
-    sampleCube(*fields.coarsePlain, coarse, frame, shape.coarseHalf, shape.coarseHalf, out);
+    out = sampleCube(*fields.coarseTextured, coarse, frame, shape.coarseHalf, shape.coarseHalf, true, out);
+    sampleCube(*fields.coarsePlain, coarse, frame, shape.coarseHalf, shape.coarseHalf, true, out);
 }
 
 ReducedFeatures::ReducedFeatures(const FeatureShape& shape, const PrincipalAxes& axes)

@@ -8,6 +8,7 @@ function(add_cli_test file)
   endforeach()
 endfunction()
 
+add_cli_test(analogy_test Analogy)
 add_cli_test(compare_test Compare Libraries Page)
 add_cli_test(path_test Attributes Doors StandardStreams MainPath Determinism Words)
 add_cli_test(error_test BadOptions BadFiles Disk Signals)

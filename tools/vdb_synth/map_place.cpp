@@ -37,7 +37,7 @@ MapPlace mapPlaceOf(const Arguments& arguments, const std::vector<std::string>& 
 void writeWithMap(Run& run, const LevelSet& model, const std::vector<GridPtr>& map, const MapPlace& place,
                   const std::vector<std::string>& paths, ModelOutputOptions outputs) {
     outputs.metadata = run.metadata();
-    if (place.inside) outputs.extraGrids = map;
+    if (place.inside) outputs.extraGrids.insert(outputs.extraGrids.end(), map.begin(), map.end());
     writeModel(model, paths, outputs, run.outputs(), run.context);
     if (!place.path.empty() && !place.inside) writeVdb(run.outputs().add(place.path), map, outputs.metadata);
 }

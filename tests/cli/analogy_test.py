@@ -1,0 +1,66 @@
+"""analogy with the real program: its outputs, its words, what it refuses."""
+import json
+import unittest
+
+from support import CliTest
+
+
+class Analogy(CliTest):
+    def model(self, name):
+        return json.loads(self.ok("info", name, "--json").stdout)["model"]
+
+    def setUp(self):
+        super().setUp()
+        self.ok("make", "dilation", "a.vdb", "a2.vdb", "--resolution", 48)
+        self.ok("make", "three-tori", "b.vdb", "--resolution", 64)
+
+    def test_result_report_and_map(self):
+        self.ok("analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "-o", "m.ply", "--direction", "around:z", "--source-map", "--write-directions",
+                "--report", "r.json")
+        with open(self.path("r.json")) as file:
+            report = json.load(file)
+        self.assertEqual(report["counts"]["levels"][-1]["voxels"] > 1000, True)
+        self.assertIn("singularities", report["counts"])
+        self.assertEqual(report["quality"]["band_gaps"], 0)
+        self.assertGreater(self.model("m.vdb")["solid_voxels"], 1.2 * self.model("b.vdb")["solid_voxels"])
+        names = {grid["name"] for grid in json.loads(self.ok("info", "m.vdb", "--json").stdout)["grids"]}
+        self.assertLessEqual({"surface", "source", "exemplar", "source_rotation", "direction"}, names)
+        # The field that was written gives the same result when it is read.
+        self.ok("analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "n.vdb", "--direction", "m.vdb:direction")
+        self.assertAlmostEqual(self.model("n.vdb")["solid_voxels"] / self.model("m.vdb")["solid_voxels"], 1, places=2)
+        self.ok("analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "t1.vdb", "--direction", "radial", "--threads", 1)
+        self.ok("analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "t2.vdb", "--direction", "radial", "--threads", 3)
+        self.assertEqual(self.read("t1.vdb"), self.read("t2.vdb"))
+
+    def test_strokes(self):
+        self.write("s.csv", "32,10,32,1,0,0\n32,54,32,-1,0,0\n")
+        self.ok("analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--direction", "s.csv")
+        self.write("s.json", json.dumps([{"position": [32, 10, 32], "direction": [1, 0, 0]}]))
+        self.ok("analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--direction", "s.json")
+        self.write("bad.csv", "1,2,3,0,0,0\n")
+        self.fails(3, "without a place or a direction", "analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--direction", "bad.csv")
+        self.write("bad.json", "[{\"position\": 1}]")
+        self.fails(3, "not a list of", "analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--direction", "bad.json")
+        self.write("short.csv", "1,2,3,4\n")
+        self.fails(3, "short.csv", "analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--direction", "short.csv")
+
+    def test_refusals(self):
+        self.fails(2, "too few inputs", "analogy", "a.vdb", "a2.vdb", "-o", "m.vdb")
+        self.fails(2, "an even number of inputs", "analogy", "a.vdb", "a2.vdb", "a.vdb", "b.vdb", "-o", "m.vdb")
+        self.fails(2, "--direction", "analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--direction", "axis:w")
+        self.fails(2, "--samples", "analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--samples", 4)
+        self.fails(2, "--scale", "analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--scale", 100)
+        self.fails(2, "takes no direction", "analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--naive", "--direction", "radial")
+        self.fails(3, "no-such.vdb", "analogy", "no-such.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb")
+        self.ok("make", "dilation", "c.vdb", "c2.vdb", "--resolution", 48, "--voxel-size", 0.5)
+        self.fails(1, "same --voxel-size", "analogy", "a.vdb", "c2.vdb", "b.vdb", "-o", "m.vdb")
+        self.fails(2, "give two outputs", "make", "grooves", "g.vdb")
+        self.fails(1, "tells no direction", "analogy", "a.vdb", "a2.vdb", self.slab(), "-o", "m.vdb")
+
+    def slab(self):
+        self.ok("make", "pits", "slab.vdb", "slab2.vdb")
+        return "slab.vdb"
+
+
+if __name__ == "__main__":
+    unittest.main()

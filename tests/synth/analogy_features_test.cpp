@@ -1,0 +1,83 @@
+#include "libvdbsynth/synth/analogy_features.h"
+
+#include <catch2/catch.hpp>
+
+#include "tests/support/makers.h"
+
+using namespace vdbsynth;
+
+TEST_CASE("Features: samples lie one voxel apart along the frame's axes, by hand", "[synth]") {
+    const BrickField x = test::fieldFrom({24, 24, 24}, [](const Index3& p) { return float(p.x); });
+    FeatureShape shape;
+    shape.half = 1;
+    shape.coarse = false;
+    REQUIRE(shape.made() == 26);
+    REQUIRE(shape.rest() == 27);
+    const Frame frame = frameFrom({0, 1, 0}, {1, 0, 0});  // t = x, n = y, b = z
+    std::vector<float> made(26), rest(27);
+    sampleMade(shape, x, {10.5f, 11, 12}, frame, made.data());
+    for (int i = 0; i < 26; ++i) {
+        const int k = i < 13 ? i : i + 1;  // the middle is left out
+        CHECK(made[std::size_t(i)] == Approx(10.5 + (k / 9 - 1)));
+    }
+    sampleRest(shape, {&x, nullptr, nullptr}, {10.5f, 11, 12}, frame, rest.data());
+    for (int k = 0; k < 27; ++k) CHECK(rest[std::size_t(k)] == Approx(10.5 + (k / 9 - 1)));
+    shape.causal = true;
+    REQUIRE(shape.made() == 9);
+    sampleMade(shape, x, {10.5f, 11, 12}, frame, made.data());
+    for (int k = 0; k < 9; ++k) CHECK(made[std::size_t(k)] == Approx(9.5));
+}
+
+TEST_CASE("Features: turning the field and the frame together changes nothing", "[synth][property]") {
+    const auto wavy = [](double x, double y, double z) {
+        return std::sin(0.3 * x) + 0.2 * y + std::cos(0.25 * z);
+    };
+    const BrickField a = test::fieldFrom(
+        {32, 32, 32}, [&](const Index3& p) { return float(wavy(p.x - 15, p.y - 15, p.z - 15)); });
+    // A quarter turn about z: (x, y) is where (y, -x) was.
+    const BrickField b = test::fieldFrom(
+        {32, 32, 32}, [&](const Index3& p) { return float(wavy(p.y - 15, -(p.x - 15), p.z - 15)); });
+    FeatureShape shape;
+    shape.coarse = false;
+    std::vector<float> of(shape.rest()), turned(shape.rest());
+    const Frame frame = frameFrom({0.6f, 0, 0.8f}, {0.3f, 1, 0.1f});
+    const auto turn = [](const Vec3f& v) { return Vec3f{-v.y, v.x, v.z}; };
+    const Frame other = frameFrom(turn(frame.n), turn(frame.t));
+    sampleRest(shape, {&a, nullptr, nullptr}, {17, 12, 15}, frame, of.data());
+    sampleRest(shape, {&b, nullptr, nullptr}, {18, 17, 15}, other, turned.data());
+    for (std::size_t i = 0; i < of.size(); ++i) CHECK(of[i] == Approx(turned[i]).margin(1e-4));
+}
+
+TEST_CASE("ReducedFeatures: the two parts together are the projection, and the depth", "[synth]") {
+    FeatureShape shape;
+    shape.half = 1;
+    shape.coarse = false;
+    std::vector<float> rows;
+    for (std::uint64_t r = 0; r < 200; ++r) {
+        Random random(1, r);
+        for (std::size_t k = 0; k < shape.size(); ++k) rows.push_back(float(random.uniform()));
+    }
+    const PrincipalAxes axes = principalAxes(rows, shape.size(), 7, 2);
+    const ReducedFeatures reduced(shape, axes);
+    REQUIRE(reduced.count() == 8);
+    std::vector<float> expected(7), rest(8), out(8);
+    axes.project(rows.data(), expected.data());
+    reduced.ofRest(rows.data() + shape.made(), -2.5f, rest.data());
+    reduced.addMade(rows.data(), rest.data(), out.data());
+    for (std::size_t i = 0; i < 7; ++i) CHECK(out[i] == Approx(expected[i]).margin(1e-4));
+    CHECK(out[7] == Approx(-2.5));
+}
+
+TEST_CASE("DepthClasses: open where depths near by do not agree", "[synth]") {
+    DepthClasses depths(2);
+    for (int d = -10; d <= 10; ++d) {
+        // A shell three voxels thick with a rough outside: full from -4 to -2, mixed at -1 to 0, else empty.
+        depths.add(float(d), d < -4 ? 3.f : d < -1 ? -2.f : d > 0 ? 2.f : 0.f);
+    }
+    depths.finish();
+    for (int d : {-9, -8, 3, 4, 10, 300}) CHECK_FALSE(depths.open(float(d)));
+    for (int d : {-6, -5, -4, -3, -2, -1, 0, 1, 2}) CHECK(depths.open(float(d)));
+    CHECK_FALSE(depths.full(-8));
+    CHECK_FALSE(depths.full(-300));  // beyond what was seen: as the deepest seen
+    CHECK_FALSE(depths.full(5));
+}

@@ -1,13 +1,10 @@
 #include "libvdbsynth/synth/volume_analogy.h"
 
 #include "libvdbsynth/base/error.h"
-#include "libvdbsynth/base/hash.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/base/parallel_sort.h"
-#include "libvdbsynth/grid/field_sampling.h"
 #include "libvdbsynth/grid/pyramid.h"
-#include "libvdbsynth/search/feature_index.h"
-#include "libvdbsynth/synth/analogy_features.h"
+#include "libvdbsynth/synth/volume_analogy_steps.h"
 
 #include <algorithm>
 #include <array>
@@ -18,279 +15,15 @@
 namespace vdbsynth {
 namespace {
 
-constexpr float kFar = 6;               // [voxels] of what is not near the result's surface
-constexpr std::size_t kLearned = 6000;  // features that the principal axes are made from
-constexpr double kShare = 0.9999;       // of their variance
-constexpr float kOutside = 1e9f;        // marks voxels that are no source
-constexpr float kWave = 0.5f;           // [voxels of the level] of sweep distance
-
-Vec3f middleOf(const Index3& v) {
-    return {float(v.x), float(v.y), float(v.z)};
-}
-Vec3f turned(const Frame& from, const Frame& to, const Vec3f& v) {
-    return to.t * dot(from.t, v) + to.n * dot(from.n, v) + to.b * dot(from.b, v);
-}
-// Places are never far below 0, and rounding by a library call is a tenth of a sweep.
-Index3 nearestVoxel(const Vec3f& p) {
-    constexpr int kUp = 1024;
-    const auto round = [](float v) { return int(v + (float(kUp) + 0.5f)) - kUp; };
-    return {round(p.x), round(p.y), round(p.z)};
-}
-
-// One pair at all levels.
-struct PairLevels {
-    AnalogyPyramid plain, textured;
-};
-
-// A voxel of a pair that may be copied.
-struct Row {
-    std::int32_t pair, voxel;
-};
-
-// The pairs at one level: every voxel that may be copied, with its feature.
-class Training {
-public:
-    Training(const std::vector<AnalogyPair>& pairs, const std::vector<PairLevels>& levels, int level,
-             const FeatureShape& shape, const VolumeAnalogyOptions& options, const RunContext& ctx)
-        : mLevels(levels), mLevel(level), mShape(shape), mDepths(shape.half) {
-        for (std::size_t p = 0; p < pairs.size(); ++p) addDepths(pairs[p], p);
-        mDepths.finish();
-        for (std::size_t p = 0; p < pairs.size(); ++p) addRows(pairs[p], p, options.aligned, ctx);
-        if (mRows.empty())
-            throw Error(ErrorCode::Unusable, "the pair is too small for neighbourhoods of " +
-                                                 std::to_string(2 * shape.half + 1) + " voxels at level " +
-                                                 std::to_string(level + 1) +
-                                                 "; use fewer --levels, or a larger or finer pair");
-        learn(options, ctx);
-    }
-
-    const DepthClasses& depths() const { return mDepths; }
-    const FeatureIndex& index() const { return *mIndex; }
-    const ReducedFeatures& reduced() const { return mReduced; }
-    const PrincipalAxes& axes() const { return mAxes; }
-    const Row& row(std::int32_t r) const { return mRows[std::size_t(r)]; }
-    const Frame& frame(const Row& r) const {
-        return mVoxels[std::size_t(r.pair)].frame[std::size_t(r.voxel)];
-    }
-    Index3 voxel(const Row& r) const { return mVoxels[std::size_t(r.pair)].table[std::size_t(r.voxel)]; }
-    float plainAt(const Row& r) const {
-        return mLevels[std::size_t(r.pair)].plain.distance[std::size_t(mLevel)].inside(voxel(r));
-    }
-    // The plain distance at a place of the row's pair.
-    float plainThrough(const Row& r, const Vec3f& at) const {
-        return sampleTrilinear(mLevels[std::size_t(r.pair)].plain.distance[std::size_t(mLevel)], at);
-    }
-    const BrickField& textured(const Row& r) const {
-        return mLevels[std::size_t(r.pair)].textured.distance[std::size_t(mLevel)];
-    }
-    std::size_t size() const { return mRows.size(); }
-    // Half as far as a patch can go on from the middle of a pair.
-    int patchReach(std::int32_t pair) const {
-        Index3 size = mInner[std::size_t(pair)].size();
-        if (size.x > size.y) std::swap(size.x, size.y);
-        if (size.y > size.z) std::swap(size.y, size.z);
-        return std::clamp(std::max(size.x, size.y) / 3, 3, 24);
-    }
-    // The row of a voxel, negative if it may not be copied.
-    std::int32_t find(std::int32_t pair, const Index3& p) const {
-        const std::int32_t voxel = mVoxels[std::size_t(pair)].table.find(p);
-        return voxel < 0 ? -1 : mFirst[std::size_t(pair)] + voxel;
-    }
-
-private:
-    // What is inside `inner` at this level; a margin keeps features inside.
-    IndexBox innerAt(const AnalogyPair& pair, int margin) const {
-        const int scale = 1 << mLevel;
-        IndexBox box;
-        for (int axis = 0; axis < 3; ++axis) {
-            box.min[axis] = (pair.inner.min[axis] + scale - 1) / scale + margin;
-            box.max[axis] = (pair.inner.max[axis] + 1) / scale - 1 - margin;
-        }
-        return box;
-    }
-
-    void addDepths(const AnalogyPair& pair, std::size_t p) {
-        const BrickField &plain = mLevels[p].plain.distance[std::size_t(mLevel)],
-                         &textured = mLevels[p].textured.distance[std::size_t(mLevel)];
-        const IndexBox box = innerAt(pair, 0).intersection(plain.box());
-        if (box.empty()) return;
-        std::vector<float> a(std::size_t(box.size().z)), b(a.size());
-        for (int x = box.min.x; x <= box.max.x; ++x)
-            for (int y = box.min.y; y <= box.max.y; ++y) {
-                plain.readBox({x, y, box.min.z}, {1, 1, box.size().z}, a.data());
-                textured.readBox({x, y, box.min.z}, {1, 1, box.size().z}, b.data());
-                for (std::size_t z = 0; z < a.size(); ++z) mDepths.add(a[z], b[z]);
-            }
-    }
-
-    void addRows(const AnalogyPair& pair, std::size_t p, bool aligned, const RunContext& ctx) {
-        const BrickField& plain = mLevels[p].plain.distance[std::size_t(mLevel)];
-        const int margin =
-            mShape.coarse ? std::max(mShape.half + 1, 2 * mShape.coarseHalf + 2) : mShape.half + 1;
-        const IndexBox box = innerAt(pair, margin);
-        mInner.push_back(box);
-        const BrickField sources =
-            BrickField::generate(plain.box(), ctx, [&](const IndexBox& brick, float* samples) {
-                plain.readBox(brick.min, brick.size(), samples);
-                for (int i = 0; i < BrickField::kSamples; ++i)
-                    if (!box.contains(brick.min + Index3{i >> 6, (i >> 3) & 7, i & 7})) samples[i] = kOutside;
-            });
-        VoxelTable table = VoxelTable::where(
-            sources, [&](float d) { return d < kOutside && mDepths.open(d); }, ctx);
-        mFirst.push_back(std::int32_t(mRows.size()));
-        for (std::size_t v = 0; v < table.size(); ++v) mRows.push_back({std::int32_t(p), std::int32_t(v)});
-        mVoxels.push_back(analogyVoxels(std::move(table), *pair.frames, mLevel, aligned, ctx));
-    }
-
-    void sample(std::size_t r, float* out) const {
-        const Row& row = mRows[r];
-        const PairLevels& of = mLevels[std::size_t(row.pair)];
-        const std::size_t l = std::size_t(mLevel);
-        const Vec3f at = middleOf(voxel(row));
-        sampleMade(mShape, of.textured.density[l], at, frame(row), out);
-        FeatureFields fields{&of.plain.density[l], nullptr, nullptr};
-        if (mShape.coarse) {
-            fields.coarsePlain = &of.plain.density[l + 1];
-            fields.coarseTextured = &of.textured.density[l + 1];
-        }
-        sampleRest(mShape, fields, at, frame(row), out + mShape.made());
-    }
-
-    void learn(const VolumeAnalogyOptions& options, const RunContext& ctx) {
-        const std::size_t size = mShape.size(), learned = std::min(kLearned, mRows.size());
-        std::vector<float> some(learned * size);
-        parallelFor(ctx, learned, 64, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                sample(i * mRows.size() / learned, some.data() + i * size);
-        });
-        mAxes = principalAxes(some, size, std::size_t(options.components), kShare);
-        mReduced = ReducedFeatures(mShape, mAxes);
-        const std::size_t count = mReduced.count();
-        std::vector<float> features(mRows.size() * count);
-        parallelFor(ctx, mRows.size(), 256, [&](std::size_t begin, std::size_t end) {
-            std::vector<float> feature(size), rest(count);
-            for (std::size_t r = begin; r < end; ++r) {
-                sample(r, feature.data());
-                mReduced.ofRest(feature.data() + mShape.made(), plainAt(mRows[r]), rest.data());
-                mReduced.addMade(feature.data(), rest.data(), features.data() + r * count);
-            }
-        });
-        mIndex.emplace(std::move(features), count);
-    }
-
-    const std::vector<PairLevels>& mLevels;
-    int mLevel;
-    FeatureShape mShape;
-    DepthClasses mDepths;
-    std::vector<Row> mRows;
-    std::vector<std::int32_t> mFirst;    // row of each pair's first voxel
-    std::vector<AnalogyVoxels> mVoxels;  // of each pair
-    std::vector<IndexBox> mInner;        // of each pair, what may be copied
-    PrincipalAxes mAxes;
-    ReducedFeatures mReduced;
-    std::optional<FeatureIndex> mIndex;
-};
-
-// Patches of the pairs over a target's surface: each begins at a place drawn at random with a source drawn at
-// random, and goes on from neighbour to neighbour, in both surfaces' frames, until it is as large as the pair
-// allows or meets another. What lies above and below takes the source of the surface's voxel beneath it, at
-// its own depth.
-class PatchLayout {
-public:
-    PatchLayout(const AnalogyVoxels& voxels, const BrickField& plain, const Training& training,
-                const RunContext& ctx)
-        : mVoxels(voxels), mPlain(plain), mTraining(training), mPlaced(voxels.table.size()) {
-        std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
-        for (std::uint32_t i = 0; i < mPlaced.size(); ++i)
-            if (onSurface(i)) order.push_back({hash64(&i, sizeof i, ctx.seed), i});
-        std::sort(order.begin(), order.end());
-        std::vector<std::int32_t> seeds;
-        for (std::size_t r = 0; r < training.size(); ++r)
-            if (std::abs(training.plainAt(training.row(std::int32_t(r)))) < kSurface)
-                seeds.push_back(std::int32_t(r));
-        if (seeds.empty()) return;
-        for (const auto& [key, i] : order)
-            if (mPlaced[i].pair < 0) grow(i, seeds[std::size_t(key % seeds.size())]);
-    }
-
-    // Negative where no patch says anything.
-    std::int32_t rowOf(std::size_t i) const {
-        const Index3& v = mVoxels.table[i];
-        const float depth = mPlain.inside(v);
-        const Vec3f foot = middleOf(v) - mVoxels.frame[i].n * depth;
-        const Index3 base = nearestVoxel(foot);
-        std::int32_t nearest = -1;
-        float best = 1e9f;
-        for (int k = 0; k < 27; ++k) {
-            const std::int32_t j = mVoxels.table.find(base + Index3{k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1});
-            if (j < 0 || mPlaced[std::size_t(j)].pair < 0) continue;
-            const Vec3f offset = middleOf(mVoxels.table[std::size_t(j)]) - foot;
-            if (dot(offset, offset) >= best) continue;
-            best = dot(offset, offset);
-            nearest = j;
-        }
-        if (nearest < 0) return -1;
-        const Placed& placed = mPlaced[std::size_t(nearest)];
-        const Frame& frame = mTraining.frame(mTraining.row(placed.row));
-        const Vec3f beside = turned(mVoxels.frame[std::size_t(nearest)], frame,
-                                    foot - middleOf(mVoxels.table[std::size_t(nearest)]));
-        const Vec3f at = placed.at + (beside - frame.n * dot(frame.n, beside)) +
-                         frame.n * (depth - mTraining.plainAt(mTraining.row(placed.row)));
-        return mTraining.find(placed.pair, nearestVoxel(at));
-    }
-
-private:
-    static constexpr float kSurface = 0.9f;  // [voxels]
-    struct Placed {
-        std::int32_t pair = -1, row = -1;
-        Vec3f at;
-    };
-
-    bool onSurface(std::size_t i) const { return std::abs(mPlain.inside(mVoxels.table[i])) < kSurface; }
-
-    void grow(std::uint32_t first, std::int32_t seed) {
-        const Row& begin = mTraining.row(seed);
-        const int reach = mTraining.patchReach(begin.pair);
-        mPlaced[first] = {begin.pair, seed, middleOf(mTraining.voxel(begin))};
-        std::vector<std::pair<std::uint32_t, int>> queue{{first, 0}};
-        for (std::size_t next = 0; next < queue.size(); ++next) {
-            const auto [i, steps] = queue[next];
-            if (steps == reach) continue;
-            const Placed from = mPlaced[i];
-            const Frame& frame = mTraining.frame(mTraining.row(from.row));
-            for (int k = 0; k < 27; ++k) {
-                const Index3 offset{k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1};
-                const std::int32_t j = mVoxels.table.find(mVoxels.table[i] + offset);
-                if (j < 0 || mPlaced[std::size_t(j)].pair >= 0 || !onSurface(std::size_t(j)) ||
-                    dot(mVoxels.frame[i].n, mVoxels.frame[std::size_t(j)].n) <= 0)
-                    continue;
-                Vec3f at = from.at + turned(mVoxels.frame[i], frame, middleOf(offset));
-                std::int32_t row = mTraining.find(from.pair, nearestVoxel(at));
-                if (row < 0) continue;
-                // Back to the depth of the voxel, which steps along a tangent leave.
-                const Row& source = mTraining.row(row);
-                at = at + mTraining.frame(source).n * (mPlain.inside(mVoxels.table[std::size_t(j)]) -
-                                                       mTraining.plainThrough(source, at));
-                row = mTraining.find(from.pair, nearestVoxel(at));
-                if (row < 0) continue;
-                mPlaced[std::size_t(j)] = {from.pair, row, at};
-                queue.push_back({std::uint32_t(j), steps + 1});
-            }
-        }
-    }
-
-    const AnalogyVoxels& mVoxels;
-    const BrickField& mPlain;
-    const Training& mTraining;
-    std::vector<Placed> mPlaced;  // of voxels on the surface
-};
+constexpr float kFar = 6;      // [voxels] of what is not near the result's surface
+constexpr float kWave = 0.5f;  // [voxels of the level] of sweep distance
 
 // What a level leaves to the next finer one.
 struct Made {
     BrickField distance, density;
     VoxelTable table;
     std::vector<Frame> frame;
-    std::vector<Row> source;  // pair -1: none
+    std::vector<AnalogyRow> source;  // pair -1: none
     std::vector<Index3> sourceVoxel;
     std::vector<Frame> sourceFrame;
 };
@@ -298,7 +31,7 @@ struct Made {
 // The target at one level.
 class Level {
 public:
-    Level(const Training& training, const AnalogyPyramid& target, const FrameField& frames, int level,
+    Level(const AnalogyTraining& training, const AnalogyPyramid& target, const FrameField& frames, int level,
           const FeatureShape& shape, const Made* coarser, const VolumeAnalogyOptions& options,
           const RunContext& ctx)
         : mTraining(training),
@@ -350,7 +83,7 @@ public:
         result.distance = voted();
         result.density = densityField(result.distance, mContext);
         for (std::int32_t row : mSource) {
-            const Row source = row < 0 ? Row{-1, -1} : mTraining.row(row);
+            const AnalogyRow source = row < 0 ? AnalogyRow{} : mTraining.row(row);
             result.source.push_back(source);
             result.sourceVoxel.push_back(row < 0 ? Index3{} : mTraining.voxel(source));
             result.sourceFrame.push_back(row < 0 ? Frame{} : mTraining.frame(source));
@@ -534,7 +267,7 @@ private:
             if (j < 0 || mSource[std::size_t(j)] < 0) continue;
             std::int32_t row = mSource[std::size_t(j)];
             if (k != 13) {
-                const Row& source = mTraining.row(row);
+                const AnalogyRow& source = mTraining.row(row);
                 const Vec3f from =
                     middleOf(mTraining.voxel(source)) -
                     turned(mVoxels.frame[std::size_t(j)], mTraining.frame(source), middleOf(offset));
@@ -554,7 +287,7 @@ private:
     // What a voxel's source says about a place: the textured distance as far from the source, in its frame,
     // as the place is from the voxel; the source first moved to the voxel's own depth.
     float readThrough(std::size_t i, std::int32_t row, const Index3& place) const {
-        const Row& source = mTraining.row(row);
+        const AnalogyRow& source = mTraining.row(row);
         const Frame& frame = mTraining.frame(source);
         const float depth =
             std::clamp(mPlain.inside(mVoxels.table[i]) - mTraining.plainAt(source), -1.f, 1.f);
@@ -587,7 +320,7 @@ private:
         return result;
     }
 
-    const Training& mTraining;
+    const AnalogyTraining& mTraining;
     const BrickField &mPlain, &mPlainDensity;
     const BrickField* mCoarsePlain;
     FeatureShape mShape;
@@ -676,7 +409,7 @@ VolumeAnalogyResult makeAnalogy(const std::vector<AnalogyPair>& pairs, const Bri
     std::optional<Made> made;
     for (int l = options.levels - 1; l >= 0; --l) {
         const FeatureShape shape{options.half, options.coarseHalf, options.causal, l + 1 < options.levels};
-        const Training training(pairs, levels, l, shape, options, ctx);
+        const AnalogyTraining training(pairs, levels, l, shape, options, ctx);
         Level level(training, plain, frames, l, shape, made ? &*made : nullptr, options, ctx);
         result.levels.push_back(level.run());
         made = level.made();

@@ -9,6 +9,7 @@
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <sstream>
@@ -17,6 +18,23 @@
 
 namespace vdbsynth {
 namespace {
+
+constexpr std::uintmax_t kSmallFile = 1 << 20;
+
+// Turns what OpenVDB throws into BadData. A small file that asks for more memory than there is has a length
+// in it that is none.
+template <typename Work>
+void whileParsing(const std::string& path, Work&& work) {
+    try {
+        behindWall(ErrorCode::BadData, path + ": truncated or corrupt", work);
+    } catch (const Error& error) {
+        std::error_code ignored;
+        if (error.code() != ErrorCode::Memory || std::filesystem::file_size(path, ignored) > kSmallFile)
+            throw;
+        throw Error(ErrorCode::BadData,
+                    path + ": truncated or corrupt: it asks for more memory than there is");
+    }
+}
 
 // OpenVDB's table of grid kinds, which only grids may change.
 struct Kinds : openvdb::GridBase {
@@ -66,7 +84,7 @@ std::unique_ptr<openvdb::io::File> openVdb(const std::string& path) {
     if (probe.gcount() > 2 && isGzip(std::string(magic, 3))) return nullptr;
     if (std::string(magic, 4) != " BDV") throw Error(ErrorCode::BadData, path + ": not a VDB file");
     auto file = std::make_unique<openvdb::io::File>(path);
-    behindWall(ErrorCode::BadData, path + ": truncated or corrupt", [&] { openWithStrangers(*file); });
+    whileParsing(path, [&] { openWithStrangers(*file); });
     return file;
 }
 
@@ -82,7 +100,7 @@ VdbContents readPackedVdb(const std::string& path) {
     if (content.compare(0, 4, " BDV") != 0)
         throw Error(ErrorCode::BadData, path + ": what it holds is not a VDB file");
     VdbContents contents;
-    behindWall(ErrorCode::BadData, path + ": truncated or corrupt", [&] {
+    whileParsing(path, [&] {
         std::istringstream bytes(content);
         openvdb::io::Stream stream(bytes, /* delayLoad= */ false);
         contents.metadata = textOf(*stream.getMetadata());
@@ -103,7 +121,7 @@ VdbContents readVdb(const std::string& path, const RunContext& ctx) {
         stage.advance();
         return contents;
     }
-    behindWall(ErrorCode::BadData, path + ": truncated or corrupt", [&] {
+    whileParsing(path, [&] {
         contents.metadata = textOf(*file->getMetadata());
         for (auto name = file->beginName(); name != file->endName(); ++name) try {
                 contents.grids.push_back(file->readGrid(*name));

@@ -52,6 +52,9 @@ class Analogy(CliTest):
         self.fails(2, "--scale", "analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--scale", 100)
         self.fails(2, "takes no direction", "analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--naive", "--direction", "radial")
         self.fails(3, "no-such.vdb", "analogy", "no-such.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb")
+        for length in (200, 3000, 20000):
+            self.write("cut.vdb", self.read("a2.vdb")[:length])
+            self.fails(3, "truncated or corrupt", "analogy", "a.vdb", "cut.vdb", "b.vdb", "-o", "m.vdb")
         self.ok("make", "dilation", "c.vdb", "c2.vdb", "--resolution", 48, "--voxel-size", 0.5)
         self.fails(1, "same --voxel-size", "analogy", "a.vdb", "c2.vdb", "b.vdb", "-o", "m.vdb")
         self.fails(2, "give two outputs", "make", "grooves", "g.vdb")

@@ -1,0 +1,123 @@
+#pragma once
+#include "libvdbsynth/grid/field_sampling.h"
+#include "libvdbsynth/search/feature_index.h"
+#include "libvdbsynth/synth/analogy_features.h"
+#include "libvdbsynth/synth/volume_analogy.h"
+
+#include <optional>
+#include <vector>
+
+// Steps of volume_analogy; for its .cpp files only.
+namespace vdbsynth {
+
+inline constexpr float kOutside = 1e9f;  // marks voxels that are no source
+
+inline Vec3f middleOf(const Index3& v) {
+    return {float(v.x), float(v.y), float(v.z)};
+}
+/// What is along one frame's axes, along another's.
+inline Vec3f turned(const Frame& from, const Frame& to, const Vec3f& v) {
+    return to.t * dot(from.t, v) + to.n * dot(from.n, v) + to.b * dot(from.b, v);
+}
+/// Places are never far below 0, and rounding by a library call is a tenth of a sweep.
+inline Index3 nearestVoxel(const Vec3f& p) {
+    constexpr int kUp = 1024;
+    const auto round = [](float v) { return int(v + (float(kUp) + 0.5f)) - kUp; };
+    return {round(p.x), round(p.y), round(p.z)};
+}
+
+/// One pair at all levels.
+struct PairLevels {
+    AnalogyPyramid plain, textured;
+};
+
+/// A voxel of a pair that may be copied.
+struct AnalogyRow {
+    std::int32_t pair = -1, voxel = -1;
+};
+
+/// The pairs at one level: every voxel that may be copied, with its feature.
+class AnalogyTraining {
+public:
+    /// @throw Error Unusable (a pair too small for the level)
+    AnalogyTraining(const std::vector<AnalogyPair>& pairs, const std::vector<PairLevels>& levels, int level,
+                    const FeatureShape& shape, const VolumeAnalogyOptions& options, const RunContext& ctx);
+
+    const DepthClasses& depths() const { return mDepths; }
+    const FeatureIndex& index() const { return *mIndex; }
+    const ReducedFeatures& reduced() const { return mReduced; }
+    const PrincipalAxes& axes() const { return mAxes; }
+    std::size_t size() const { return mRows.size(); }
+    const AnalogyRow& row(std::int32_t r) const { return mRows[std::size_t(r)]; }
+    const Frame& frame(const AnalogyRow& r) const {
+        return mVoxels[std::size_t(r.pair)].frame[std::size_t(r.voxel)];
+    }
+    Index3 voxel(const AnalogyRow& r) const {
+        return mVoxels[std::size_t(r.pair)].table[std::size_t(r.voxel)];
+    }
+    float plainAt(const AnalogyRow& r) const { return plain(r).inside(voxel(r)); }
+    /// The plain distance at a place of the row's pair.
+    float plainThrough(const AnalogyRow& r, const Vec3f& at) const { return sampleTrilinear(plain(r), at); }
+    const BrickField& textured(const AnalogyRow& r) const {
+        return mLevels[std::size_t(r.pair)].textured.distance[std::size_t(mLevel)];
+    }
+    /// The row of a voxel, negative if it may not be copied.
+    std::int32_t find(std::int32_t pair, const Index3& p) const {
+        const std::int32_t voxel = mVoxels[std::size_t(pair)].table.find(p);
+        return voxel < 0 ? -1 : mFirst[std::size_t(pair)] + voxel;
+    }
+    /// Half as far as a patch can go on from the middle of a pair. [voxels]
+    int patchReach(std::int32_t pair) const;
+
+private:
+    const BrickField& plain(const AnalogyRow& r) const {
+        return mLevels[std::size_t(r.pair)].plain.distance[std::size_t(mLevel)];
+    }
+    IndexBox innerAt(const AnalogyPair& pair, int margin) const;
+    void addDepths(const AnalogyPair& pair, std::size_t p);
+    void addRows(const AnalogyPair& pair, std::size_t p, bool aligned, const RunContext& ctx);
+    void sample(std::size_t r, float* out) const;
+    void learn(const VolumeAnalogyOptions& options, const RunContext& ctx);
+
+    const std::vector<PairLevels>& mLevels;
+    int mLevel;
+    FeatureShape mShape;
+    DepthClasses mDepths;
+    std::vector<AnalogyRow> mRows;
+    std::vector<std::int32_t> mFirst;    // row of each pair's first voxel
+    std::vector<AnalogyVoxels> mVoxels;  // of each pair
+    std::vector<IndexBox> mInner;        // of each pair, what may be copied
+    PrincipalAxes mAxes;
+    ReducedFeatures mReduced;
+    std::optional<FeatureIndex> mIndex;
+};
+
+/// Patches of the pairs over a target's surface: each begins at a place drawn at random with a source drawn
+/// at random, and goes on from neighbour to neighbour, in both surfaces' frames, until it is as large as the
+/// pair allows or meets another. What lies above and below takes the source of the surface's voxel beneath
+/// it, at its own depth.
+/// @par Repeats by ctx.seed
+class PatchLayout {
+public:
+    /// All are borrowed. @param plain  distances of the target at the level
+    PatchLayout(const AnalogyVoxels& voxels, const BrickField& plain, const AnalogyTraining& training,
+                const RunContext& ctx);
+
+    /// The row that voxel i begins with, negative where no patch says anything.
+    std::int32_t rowOf(std::size_t i) const;
+
+private:
+    struct Placed {
+        std::int32_t pair = -1, row = -1;
+        Vec3f at;
+    };
+    bool onSurface(std::size_t i) const;
+    void grow(std::uint32_t first, std::int32_t seed);
+
+    const AnalogyVoxels& mVoxels;
+    const BrickField& mPlain;
+    const AnalogyTraining& mTraining;
+    std::vector<Placed> mPlaced;  // of voxels on the surface
+};
+
+}  // namespace vdbsynth

@@ -10,7 +10,7 @@
 namespace vdbsynth {
 namespace {
 
-constexpr float kTooSteep = 0.17f;  // sine of 10 degrees
+constexpr float kTooSteep = 0.71f;  // sine of 30 degrees
 constexpr float kSingular = 0.7f;   // length of the mean direction
 constexpr int kRounds = 40;         // of averaging, at every resolution
 

@@ -12,9 +12,7 @@ constexpr float kDepthWeight = 1;  // of a voxel of depth beside a sample that d
 // bricks.
 class Window {
 public:
-    Window(const BrickField& field, const Vec3f& at, int half) {
-        // Corners of a cube of half 2 are 3.5 away, in any turn.
-        const int reach = int(std::ceil(float(half) * 1.7321f));
+    Window(const BrickField& field, const Vec3f& at, int reach) {
         mSide = 2 * reach + 2;
         mCorner = {int(std::floor(at.x)) - reach, int(std::floor(at.y)) - reach,
                    int(std::floor(at.z)) - reach};
@@ -52,15 +50,31 @@ private:
     }
 };
 
+// Where a column of the cube stands, and along what.
+struct Column {
+    Vec3f foot, along;
+};
+
+Column columnAt(const Vec3f& at, const Frame& frame, const Bend& bend, float t, float b) {
+    const Vec3f flat = at + frame.t * t + frame.b * b;
+    const float overT = bend.tt * t + bend.tb * b, overB = bend.tb * t + bend.bb * b;
+    if (overT == 0 && overB == 0) return {flat, frame.n};
+    const Vec3f along = frame.n + frame.t * overT + frame.b * overB;
+    return {flat - frame.n * (0.5f * (overT * t + overB * b)), along * (1 / length(along))};
+}
+
 // Samples of the cube of steps along the frame's axes, up to lastAlong along t; t slowest, n fastest.
-float* sampleCube(const BrickField& field, const Vec3f& at, const Frame& frame, int half, int lastAlong,
-                  bool middleToo, float* out) {
-    const Window window(field, at, half);
+float* sampleCube(const BrickField& field, const Vec3f& at, const Frame& frame, const Bend& bend, int half,
+                  int lastAlong, bool middleToo, float* out) {
+    // Corners of a cube of half 2 are 3.5 away, in any turn; of one that bends most, 4.4.
+    const bool bent = bend.tt != 0 || bend.tb != 0 || bend.bb != 0;
+    const Window window(field, at, int(std::ceil(float(half) * (bent ? 2.4f : 1.7321f))));
     for (int t = -half; t <= lastAlong; ++t)
         for (int b = -half; b <= half; ++b) {
-            const Vec3f row = at + frame.t * float(t) + frame.b * float(b);
+            const Column column = columnAt(at, frame, bend, float(t), float(b));
             for (int n = -half; n <= half; ++n)
-                if (middleToo || t != 0 || b != 0 || n != 0) *out++ = window.at(row + frame.n * float(n));
+                if (middleToo || t != 0 || b != 0 || n != 0)
+                    *out++ = window.at(column.foot + column.along * float(n));
         }
     return out;
 }
@@ -68,17 +82,20 @@ float* sampleCube(const BrickField& field, const Vec3f& at, const Frame& frame, 
 }  // namespace
 
 void sampleMade(const FeatureShape& shape, const BrickField& textured, const Vec3f& at, const Frame& frame,
-                float* out) {
-    sampleCube(textured, at, frame, shape.half, shape.causal ? -1 : shape.half, false, out);
+                const Bend& bend, float* out) {
+    sampleCube(textured, at, frame, bend, shape.half, shape.causal ? -1 : shape.half, false, out);
 }
 
 void sampleRest(const FeatureShape& shape, const FeatureFields& fields, const Vec3f& at, const Frame& frame,
-                float* out) {
-    out = sampleCube(*fields.plain, at, frame, shape.half, shape.half, true, out);
+                const Bend& bend, float* out) {
+    out = sampleCube(*fields.plain, at, frame, bend, shape.half, shape.half, true, out);
     if (!shape.coarse) return;
     const Vec3f coarse{at.x / 2 - 0.25f, at.y / 2 - 0.25f, at.z / 2 - 0.25f};
-    out = sampleCube(*fields.coarseTextured, coarse, frame, shape.coarseHalf, shape.coarseHalf, true, out);
-    sampleCube(*fields.coarsePlain, coarse, frame, shape.coarseHalf, shape.coarseHalf, true, out);
+    // Twice as large a step bends twice as much.
+    const Bend wide{2 * bend.tt, 2 * bend.tb, 2 * bend.bb};
+    out = sampleCube(*fields.coarseTextured, coarse, frame, wide, shape.coarseHalf, shape.coarseHalf, true,
+                     out);
+    sampleCube(*fields.coarsePlain, coarse, frame, wide, shape.coarseHalf, shape.coarseHalf, true, out);
 }
 
 ReducedFeatures::ReducedFeatures(const FeatureShape& shape, const PrincipalAxes& axes)

@@ -34,11 +34,13 @@ struct FeatureFields {
     const BrickField* coarseTextured = nullptr;
 };
 
-/// Samples one voxel apart along t, n and b, between voxels trilinearly [bhat2004, 5.3].
+/// Samples one voxel apart along t, n and b, between voxels trilinearly [bhat2004, 5.3]. With a bend the cube
+/// follows the surface, which the paper left open: column (t, b) stands on p + t T + b B - II(t, b) / 2 N and
+/// runs along N + II'(t, b), the normal there to first order. A bend of 0 is the paper's straight cube.
 void sampleMade(const FeatureShape& shape, const BrickField& textured, const Vec3f& at, const Frame& frame,
-                float* out);
+                const Bend& bend, float* out);
 void sampleRest(const FeatureShape& shape, const FeatureFields& fields, const Vec3f& at, const Frame& frame,
-                float* out);
+                const Bend& bend, float* out);
 
 /// Features as few numbers: their coordinates along principal axes, to which the samples of what is being
 /// made and the rest are added one after the other, and the voxel's depth: densities are all alike a voxel

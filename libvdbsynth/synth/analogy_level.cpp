@@ -1,6 +1,7 @@
 #include "libvdbsynth/synth/analogy_level.h"
 
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/grid/field_sampling.h"
 #include "libvdbsynth/grid/pyramid.h"
 
 #include <algorithm>
@@ -58,6 +59,21 @@ void fillFrames(AnalogyVoxels& voxels, std::vector<char>& known) {
     }
 }
 
+// Of the plain model's parallel surface through a place, in voxels of the level.
+Bend bendAt(const BrickField& distance, const Vec3f& at, const Frame& frame, int level) {
+    const float step = float(1 << level);
+    const auto change = [&](const Vec3f& along) {
+        const auto normal = [&](const Vec3f& p) {
+            const Vec3f gradient = sampleGradient(distance, p);
+            return gradient * (1 / std::max(length(gradient), 1e-3f));
+        };
+        return (normal(at + along * step) - normal(at - along * step)) * 0.5f;
+    };
+    const auto most = [](float v) { return std::clamp(v, -kMostBend, kMostBend); };
+    const Vec3f t = change(frame.t), b = change(frame.b);
+    return {most(dot(t, frame.t)), most((dot(t, frame.b) + dot(b, frame.t)) / 2), most(dot(b, frame.b))};
+}
+
 }  // namespace
 
 BrickField densityField(const BrickField& distance, const RunContext& ctx) {
@@ -75,12 +91,13 @@ AnalogyPyramid analogyPyramid(const BrickField& distance, int levels, const RunC
     return pyramid;
 }
 
-AnalogyVoxels analogyVoxels(VoxelTable table, const FrameField& frames, int level, bool aligned,
+AnalogyVoxels analogyVoxels(VoxelTable table, const FrameField& frames, int level, bool aligned, bool bent,
                             const RunContext& ctx) {
     AnalogyVoxels voxels;
     voxels.table = std::move(table);
     voxels.frame.resize(voxels.table.size());
     voxels.sweep.resize(voxels.table.size());
+    voxels.bend.resize(voxels.table.size());
     std::vector<char> known(voxels.table.size(), 1);
     parallelFor(ctx, voxels.table.size(), 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -93,6 +110,14 @@ AnalogyVoxels analogyVoxels(VoxelTable table, const FrameField& frames, int leve
         }
     });
     if (aligned) fillFrames(voxels, known);
+    if (aligned && bent)
+        parallelFor(ctx, voxels.table.size(), 1024, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const Index3& v = voxels.table[i];
+                const Vec3f at = toFinest({float(v.x), float(v.y), float(v.z)}, level);
+                voxels.bend[i] = bendAt(frames.distance(), at, voxels.frame[i], level);
+            }
+        });
     return voxels;
 }
 

@@ -8,10 +8,17 @@
 
 namespace vdbsynth {
 
+/// How a surface bends away from a frame's plane: second fundamental form of the plain model's surface through
+/// the voxel, along t and b, positive where it falls away as a ball does. [1 / voxels of the level]
+struct Bend {
+    float tt = 0, tb = 0, bb = 0;
+};
+
 /// The voxels of one model at one level of the pyramid, each with its frame. [voxels of the level]
 struct AnalogyVoxels {
     VoxelTable table;
     std::vector<Frame> frame;
+    std::vector<Bend> bend;    ///< all 0 unless asked for
     std::vector<float> sweep;  ///< [voxels of the finest level]
 };
 
@@ -38,9 +45,12 @@ inline Vec3f toFinest(const Vec3f& p, int level) {
 
 /// Frames and sweep distances of voxels; those near no surface voxel take their neighbours'.
 /// @param aligned  false: every frame is that of the grid's axes, in the order of slices (the naive variant)
+/// @param bent     true: bends too, by differences of the normals two voxels of the level apart, at most
+///                 kMostBend
 /// @par Repeats same bits for any number of threads
-AnalogyVoxels analogyVoxels(VoxelTable table, const FrameField& frames, int level, bool aligned,
+AnalogyVoxels analogyVoxels(VoxelTable table, const FrameField& frames, int level, bool aligned, bool bent,
                             const RunContext& ctx);
+inline constexpr float kMostBend = 0.2f;  ///< sharper, columns five voxels apart would cross
 
 /// What textured models are at each depth of the plain ones, and so where a target has to be synthesised at
 /// all: where depths within a neighbourhood's radius do not agree. By whole voxels of distance.

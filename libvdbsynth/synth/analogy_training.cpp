@@ -20,7 +20,7 @@ AnalogyTraining::AnalogyTraining(const std::vector<AnalogyPair>& pairs, const st
     : mLevels(levels), mLevel(level), mShape(shape), mDepths(shape.half) {
     for (std::size_t p = 0; p < pairs.size(); ++p) addDepths(pairs[p], p);
     mDepths.finish();
-    for (std::size_t p = 0; p < pairs.size(); ++p) addRows(pairs[p], p, options.aligned, ctx);
+    for (std::size_t p = 0; p < pairs.size(); ++p) addRows(pairs[p], p, options, ctx);
     if (mRows.empty())
         throw Error(ErrorCode::Unusable, "the pair is too small for neighbourhoods of " +
                                              std::to_string(2 * shape.half + 1) + " voxels at level " +
@@ -61,9 +61,11 @@ void AnalogyTraining::addDepths(const AnalogyPair& pair, std::size_t p) {
         }
 }
 
-void AnalogyTraining::addRows(const AnalogyPair& pair, std::size_t p, bool aligned, const RunContext& ctx) {
+void AnalogyTraining::addRows(const AnalogyPair& pair, std::size_t p, const VolumeAnalogyOptions& options,
+                              const RunContext& ctx) {
     const BrickField& plain = mLevels[p].plain.distance[std::size_t(mLevel)];
-    const int margin = mShape.coarse ? std::max(mShape.half + 1, 2 * mShape.coarseHalf + 2) : mShape.half + 1;
+    const int margin = mShape.coarse ? std::max(mShape.half + 1, 2 * mShape.coarseHalf + 2)
+                                     : mShape.half + 1 + int(options.bent);
     const IndexBox box = innerAt(pair, margin);
     mInner.push_back(box);
     const BrickField sources =
@@ -76,7 +78,8 @@ void AnalogyTraining::addRows(const AnalogyPair& pair, std::size_t p, bool align
         sources, [&](float d) { return d < kOutside && mDepths.open(d); }, ctx);
     mFirst.push_back(std::int32_t(mRows.size()));
     for (std::size_t v = 0; v < table.size(); ++v) mRows.push_back({std::int32_t(p), std::int32_t(v)});
-    mVoxels.push_back(analogyVoxels(std::move(table), *pair.frames, mLevel, aligned, ctx));
+    mVoxels.push_back(
+        analogyVoxels(std::move(table), *pair.frames, mLevel, options.aligned, options.bent, ctx));
 }
 
 void AnalogyTraining::sample(std::size_t r, float* out) const {
@@ -84,13 +87,14 @@ void AnalogyTraining::sample(std::size_t r, float* out) const {
     const PairLevels& of = mLevels[std::size_t(row.pair)];
     const std::size_t l = std::size_t(mLevel);
     const Vec3f at = middleOf(voxel(row));
-    sampleMade(mShape, of.textured.density[l], at, frame(row), out);
+    const Bend& bend = mVoxels[std::size_t(row.pair)].bend[std::size_t(row.voxel)];
+    sampleMade(mShape, of.textured.density[l], at, frame(row), bend, out);
     FeatureFields fields{&of.plain.density[l], nullptr, nullptr};
     if (mShape.coarse) {
         fields.coarsePlain = &of.plain.density[l + 1];
         fields.coarseTextured = &of.textured.density[l + 1];
     }
-    sampleRest(mShape, fields, at, frame(row), out + mShape.made());
+    sampleRest(mShape, fields, at, frame(row), bend, out + mShape.made());
 }
 
 void AnalogyTraining::learn(const VolumeAnalogyOptions& options, const RunContext& ctx) {

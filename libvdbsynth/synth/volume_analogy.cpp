@@ -45,7 +45,7 @@ public:
           mLevel(level) {
         mVoxels = analogyVoxels(VoxelTable::where(
                                     mPlain, [&](float d) { return training.depths().open(d); }, ctx),
-                                frames, level, options.aligned, ctx);
+                                frames, level, options.aligned, options.bent, ctx);
         begin();
     }
 
@@ -66,15 +66,9 @@ public:
                 runWave(waves[w], waves[w + 1], sweep == 0);
                 stage.advance();
             }
-        double squares = 0;
-        std::size_t coherent = 0;
-        for (std::size_t i = 0; i < mSource.size(); ++i) {
-            squares += double(mSquared[i]);
-            coherent += std::size_t(mCoherent[i]);
-        }
-        const double count = double(std::max<std::size_t>(mSource.size(), 1));
-        stats.meanDistance = std::sqrt(squares / count);
-        stats.coherent = double(coherent) / count;
+        const std::ptrdiff_t coherent = std::count(mCoherent.begin(), mCoherent.end(), 1);
+        stats.coherent = double(coherent) / double(std::max<std::size_t>(mSource.size(), 1));
+        probe(stats);
         return stats;
     }
 
@@ -119,7 +113,6 @@ private:
         mDensity = densityField(mDistance, mContext);
         const std::size_t count = mVoxels.table.size();
         mSource.assign(count, -1);
-        mSquared.assign(count, 0);
         mCoherent.assign(count, 0);
         mChanged.assign(count, 0);
         mWorkedOut.assign(count, 0);
@@ -159,6 +152,35 @@ private:
         return mTraining.find(mCoarser->source[std::size_t(c)].pair, nearestVoxel(from));
     }
 
+    // How near what was copied is, beside the nearest there is.
+    void probe(AnalogyLevelStats& stats) const {
+        const std::size_t count = std::min(kProbed, mSource.size());
+        std::vector<std::pair<float, float>> squared(count);
+        parallelFor(mContext, count, 16, [&](std::size_t begin, std::size_t end) {
+            std::vector<float> made(mShape.made()), feature(mTraining.reduced().count());
+            for (std::size_t k = begin; k < end; ++k) {
+                const std::size_t i = k * mSource.size() / count;
+                if (mSource[i] < 0) continue;
+                featureOf(i, made, feature);
+                squared[k] = {mTraining.index().squaredTo(feature.data(), mSource[i]),
+                              mTraining.index().nearest(feature.data(), kOutside).squared};
+            }
+        });
+        double copied = 0, exact = 0;
+        for (const auto& [of, nearest] : squared) {
+            copied += double(of);
+            exact += double(nearest);
+        }
+        stats.meanDistance = std::sqrt(copied / double(std::max<std::size_t>(count, 1)));
+        stats.exactDistance = std::sqrt(exact / double(std::max<std::size_t>(count, 1)));
+    }
+
+    void featureOf(std::size_t i, std::vector<float>& made, std::vector<float>& feature) const {
+        sampleMade(mShape, mDensity, middleOf(mVoxels.table[i]), mVoxels.frame[i], mVoxels.bend[i],
+                   made.data());
+        mTraining.reduced().addMade(made.data(), mRest.data() + i * feature.size(), feature.data());
+    }
+
     // Voxels in the order of waves; where each wave begins, and the end.
     std::vector<std::size_t> orderWaves() {
         const float thickness = kWave * float(1 << mLevel);
@@ -182,7 +204,8 @@ private:
         parallelFor(mContext, mVoxels.table.size(), 256, [&](std::size_t first, std::size_t last) {
             std::vector<float> rest(mShape.rest());
             for (std::size_t i = first; i < last; ++i) {
-                sampleRest(mShape, fields, middleOf(mVoxels.table[i]), mVoxels.frame[i], rest.data());
+                sampleRest(mShape, fields, middleOf(mVoxels.table[i]), mVoxels.frame[i], mVoxels.bend[i],
+                           rest.data());
                 mTraining.reduced().ofRest(rest.data(), mPlain.inside(mVoxels.table[i]),
                                            mRest.data() + i * count);
             }
@@ -202,7 +225,6 @@ private:
             if (mFound[k].row < 0) continue;
             const std::uint32_t i = mOrder[first + k];
             mWorkedOut[i] = mNow;
-            mSquared[i] = mFound[k].squared;
             if (mSource[i] == mFound[k].row && !searched) continue;
             mCoherent[i] = mFound[k].coherent;
             if (mSource[i] != mFound[k].row) mChanged[i] = mNow;
@@ -226,18 +248,16 @@ private:
 
     struct Found {
         std::int32_t row = -1;
-        float squared = 0, distance = 0;
+        float distance = 0;
         char coherent = 0;
     };
 
     Found match(std::uint32_t i, bool searched, std::vector<float>& made, std::vector<float>& feature) const {
         const FeatureIndex& index = mTraining.index();
-        sampleMade(mShape, mDensity, middleOf(mVoxels.table[i]), mVoxels.frame[i], made.data());
-        mTraining.reduced().addMade(made.data(), mRest.data() + i * feature.size(), feature.data());
+        featureOf(i, made, feature);
         FeatureMatch best = bestCandidate(i, feature.data());
         Found found;
         found.row = best.row;
-        found.squared = best.squared;
         found.coherent = 1;
         // Later sweeps settle what the first one found; only what has no candidate searches again.
         if (searched || best.row < 0) {
@@ -247,7 +267,6 @@ private:
             const FeatureMatch nearest = index.nearest(feature.data(), bound, float(mOptions.slack));
             if (nearest.row >= 0) {
                 found.row = nearest.row;
-                found.squared = nearest.squared;
                 found.coherent = 0;
             }
         }
@@ -331,7 +350,6 @@ private:
     AnalogyVoxels mVoxels;
     BrickField mDistance, mDensity;  // of what is being made
     std::vector<std::int32_t> mSource;
-    std::vector<float> mSquared;
     std::vector<char> mCoherent;
     std::uint32_t mNow = 0;                           // waves so far
     std::vector<std::uint32_t> mChanged, mWorkedOut;  // the wave in which each voxel last did
@@ -357,42 +375,6 @@ void checkOptions(const VolumeAnalogyOptions& options) {
 }
 
 }  // namespace
-
-namespace {
-
-// Volume that one of two models has and the other has not, in voxels of the finest level.
-double textureOf(const BrickField& plain, const BrickField& textured, int level) {
-    const Index3 size = plain.box().size();
-    std::vector<float> a(std::size_t(size.y) * std::size_t(size.z)), b(a.size());
-    double sum = 0;
-    for (int x = 0; x < size.x; ++x) {
-        plain.readBox({x, 0, 0}, {1, size.y, size.z}, a.data());
-        textured.readBox({x, 0, 0}, {1, size.y, size.z}, b.data());
-        for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] < 0) != (b[i] < 0);
-    }
-    return sum * double(1 << (3 * level));
-}
-
-}  // namespace
-
-int usefulLevels(const std::vector<AnalogyPair>& pairs, const RunContext& ctx) {
-    constexpr int kMost = 3;
-    std::array<double, kMost> sums{};
-    for (const AnalogyPair& pair : pairs) {
-        const AnalogyPyramid plain = analogyPyramid(*pair.plain, kMost, ctx),
-                             textured = analogyPyramid(*pair.textured, kMost, ctx);
-        for (int l = 0; l < kMost; ++l)
-            sums[std::size_t(l)] +=
-                textureOf(plain.distance[std::size_t(l)], textured.distance[std::size_t(l)], l);
-    }
-    int levels = 1;
-    while (levels < kMost && sums[std::size_t(levels)] >= kHeld * sums[0]) ++levels;
-    message(ctx, MessageLevel::Detail,
-            "coarser levels hold " + std::to_string(sums[1] / std::max(sums[0], 1.0)) + " and " +
-                std::to_string(sums[2] / std::max(sums[0], 1.0)) +
-                " of the texture: " + std::to_string(levels) + " levels");
-    return levels;
-}
 
 VolumeAnalogyResult makeAnalogy(const std::vector<AnalogyPair>& pairs, const BrickField& target,
                                 const FrameField& frames, const VolumeAnalogyOptions& given,

@@ -26,6 +26,7 @@ struct VolumeAnalogyOptions {
     double coherence = 0.5;
     double slack = 4;  ///< FeatureIndex::nearest's; 0: exact; 4 is 0.6 % farther on average and twice as fast
     bool causal = false;  ///< true: of what is made only what lies behind a voxel counts, as in the paper
+    bool bent = false;    ///< true: neighbourhoods follow the surface's curvature instead of a straight cube
     bool aligned = true;  ///< false: the paper's naive variant, neighbourhoods along the grid's axes
 };
 
@@ -37,8 +38,12 @@ struct AnalogyLevelStats {
     std::size_t components = 0;  ///< axes used
     double explained = 0;        ///< share of the features' variance along them
     double coherent = 0;         ///< share of voxels whose source goes on from a neighbour's
-    double meanDistance = 0;     ///< root of the mean squared feature distance in the last sweep
+    /// Root of the mean squared feature distance, when the level is done, of at most kProbed voxels spread
+    /// evenly: to what they copied, and to the nearest of all.
+    double meanDistance = 0, exactDistance = 0;
 };
+
+inline constexpr std::size_t kProbed = 2000;
 
 /// A voxel of the target and the one it was copied from.
 struct AnalogySource {
@@ -52,11 +57,14 @@ struct VolumeAnalogyResult {
     std::vector<AnalogyLevelStats> levels;  ///< coarsest first
 };
 
-/// How many levels, at most 3, still hold the texture: at each, the volume that one of textured and plain
-/// models has and the other has not is at least kHeld of what it is at the finest. What is lost at a level is
-/// not found again at the next, and thin things are lost first.
+/// How many levels, at most 3, still hold the texture. At each of them
+///  - what is solid differs from the finest level, beyond what it does in the plain model, by at most
+///    1 - kHeld of the texture's volume: what is lost at a level is not found again at the next, and thin
+///    things are lost first;
+///  - every pair has at least kRoom voxels along two axes, of which neighbourhoods take eight.
 int usefulLevels(const std::vector<AnalogyPair>& pairs, const RunContext& ctx = {});
-inline constexpr double kHeld = 0.65;
+inline constexpr double kHeld = 0.55;
+inline constexpr int kRoom = 20;  ///< [voxels of the level]
 
 /// B' such that plain : textured = target : B' [bhat2004]: coarse to fine, voxels in the order of the sweep
 /// distance, each takes the value of the voxel of the textured model whose feature is nearest.

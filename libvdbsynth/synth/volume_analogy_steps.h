@@ -75,7 +75,8 @@ private:
     }
     IndexBox innerAt(const AnalogyPair& pair, int margin) const;
     void addDepths(const AnalogyPair& pair, std::size_t p);
-    void addRows(const AnalogyPair& pair, std::size_t p, bool aligned, const RunContext& ctx);
+    void addRows(const AnalogyPair& pair, std::size_t p, const VolumeAnalogyOptions& options,
+                 const RunContext& ctx);
     void sample(std::size_t r, float* out) const;
     void learn(const VolumeAnalogyOptions& options, const RunContext& ctx);
 

@@ -15,16 +15,16 @@ TEST_CASE("Features: samples lie one voxel apart along the frame's axes, by hand
     REQUIRE(shape.rest() == 27);
     const Frame frame = frameFrom({0, 1, 0}, {1, 0, 0});  // t = x, n = y, b = z
     std::vector<float> made(26), rest(27);
-    sampleMade(shape, x, {10.5f, 11, 12}, frame, made.data());
+    sampleMade(shape, x, {10.5f, 11, 12}, frame, {}, made.data());
     for (int i = 0; i < 26; ++i) {
         const int k = i < 13 ? i : i + 1;  // the middle is left out
         CHECK(made[std::size_t(i)] == Approx(10.5 + (k / 9 - 1)));
     }
-    sampleRest(shape, {&x, nullptr, nullptr}, {10.5f, 11, 12}, frame, rest.data());
+    sampleRest(shape, {&x, nullptr, nullptr}, {10.5f, 11, 12}, frame, {}, rest.data());
     for (int k = 0; k < 27; ++k) CHECK(rest[std::size_t(k)] == Approx(10.5 + (k / 9 - 1)));
     shape.causal = true;
     REQUIRE(shape.made() == 9);
-    sampleMade(shape, x, {10.5f, 11, 12}, frame, made.data());
+    sampleMade(shape, x, {10.5f, 11, 12}, frame, {}, made.data());
     for (int k = 0; k < 9; ++k) CHECK(made[std::size_t(k)] == Approx(9.5));
 }
 
@@ -43,8 +43,8 @@ TEST_CASE("Features: turning the field and the frame together changes nothing", 
     const Frame frame = frameFrom({0.6f, 0, 0.8f}, {0.3f, 1, 0.1f});
     const auto turn = [](const Vec3f& v) { return Vec3f{-v.y, v.x, v.z}; };
     const Frame other = frameFrom(turn(frame.n), turn(frame.t));
-    sampleRest(shape, {&a, nullptr, nullptr}, {17, 12, 15}, frame, of.data());
-    sampleRest(shape, {&b, nullptr, nullptr}, {18, 17, 15}, other, turned.data());
+    sampleRest(shape, {&a, nullptr, nullptr}, {17, 12, 15}, frame, {}, of.data());
+    sampleRest(shape, {&b, nullptr, nullptr}, {18, 17, 15}, other, {}, turned.data());
     for (std::size_t i = 0; i < of.size(); ++i) CHECK(of[i] == Approx(turned[i]).margin(1e-4));
 }
 
@@ -80,4 +80,32 @@ TEST_CASE("DepthClasses: open where depths near by do not agree", "[synth]") {
     CHECK_FALSE(depths.full(-8));
     CHECK_FALSE(depths.full(-300));  // beyond what was seen: as the deepest seen
     CHECK_FALSE(depths.full(5));
+}
+
+TEST_CASE("Features: bent along a ball they are those of a plane, straight ones are not", "[synth][property]") {
+    const auto density = [](double distance) { return float(std::clamp(0.5 - distance / 2, 0.0, 1.0)); };
+    constexpr double kRadius = 8;
+    const BrickField ball = test::fieldFrom({32, 32, 32}, [&](const Index3& p) {
+        return density(std::hypot(p.x - 16, p.y - 16, p.z - 16) - kRadius);
+    });
+    const BrickField plane =
+        test::fieldFrom({32, 32, 32}, [&](const Index3& p) { return density(p.z - 16.0); });
+    FeatureShape shape;
+    shape.coarse = false;
+    std::vector<float> flat(shape.rest()), straight(shape.rest()), bent(shape.rest());
+    const Vec3f out{0.6f, 0, 0.8f};
+    const Frame frame = frameFrom(out, {0, 1, 0});
+    const Vec3f at = Vec3f{16, 16, 16} + out * float(kRadius);
+    const float bend = float(1 / kRadius);
+    sampleRest(shape, {&plane, nullptr, nullptr}, {16, 16, 16}, frameFrom({0, 0, 1}, {1, 0, 0}), {},
+               flat.data());
+    sampleRest(shape, {&ball, nullptr, nullptr}, at, frame, {}, straight.data());
+    sampleRest(shape, {&ball, nullptr, nullptr}, at, frame, {bend, 0, bend}, bent.data());
+    double far = 0, near = 0;
+    for (std::size_t i = 0; i < flat.size(); ++i) {
+        far += std::pow(double(straight[i] - flat[i]), 2);
+        near += std::pow(double(bent[i] - flat[i]), 2);
+    }
+    CAPTURE(far, near);
+    CHECK(near < 0.05 * far);
 }

@@ -127,13 +127,56 @@ TEST_CASE("makeAnalogy: refuses what it cannot work with, and stops when asked t
 }
 
 TEST_CASE("usefulLevels: thin things hold fewer", "[synth]") {
-    const auto plain = test::planeField(48, 20);
-    const auto step = test::planeField(48, 26);
-    const auto needles = test::shapeField({48, 48, 48}, [](const Vec3d& p) {
+    // A level has to be 20 voxels wide: three are no use to a field of 64.
+    for (const auto& [side, levels] : {std::pair{96, 3}, std::pair{64, 2}, std::pair{36, 1}}) {
+        const auto flat = test::planeField(side, 20), step = test::planeField(side, 26);
+        const FrameField along = framesAlong(flat, {1, 0, 0});
+        CHECK(usefulLevels({{flat, step, &along, flat->box()}}) == levels);
+    }
+    const auto plain = test::planeField(96, 20);
+    const auto needles = test::shapeField({96, 96, 96}, [](const Vec3d& p) {
         const double x = std::fmod(p.x, 12) - 6, y = std::fmod(p.y, 12) - 6;
         return std::min(p.z - 20, std::max(p.z - 30, std::sqrt(x * x + y * y) - 1.2));
     });
     const FrameField frames = framesAlong(plain, {1, 0, 0});
-    CHECK(usefulLevels({{plain, step, &frames, plain->box()}}) == 3);
     CHECK(usefulLevels({{plain, needles, &frames, plain->box()}}) < 3);
+}
+
+TEST_CASE("analogyVoxels: bends are those of the surface through a voxel", "[synth]") {
+    const auto bends = [](std::shared_ptr<const BrickField> field, const Vec3f& along, int level) {
+        const FrameField frames = framesAlong(field, along);
+        const BrickField coarse = analogyPyramid(*field, level + 1, {}).distance.back();
+        return analogyVoxels(VoxelTable::where(
+                                 coarse, [](float d) { return d > -0.5f && d < 0.5f; }, {}),
+                             frames, level, true, true, {});
+    };
+    for (int level : {0, 1}) {
+        const float expected = float(1 << level) / 15;  // per voxel of the level
+        for (const Bend& bend : bends(test::sphereField(48, 15), {0, 0, 1}, level).bend) {
+            CHECK(bend.tt == Approx(expected).margin(0.02f));
+            CHECK(bend.bb == Approx(expected).margin(0.02f));
+            CHECK(bend.tb == Approx(0).margin(0.02f));
+        }
+    }
+    // Along a cylinder nothing bends, around it all does.
+    const AnalogyVoxels along = bends(test::cylinderField(48, 10), {0, 0, 1}, 0);
+    REQUIRE(along.bend.size() > 100);
+    for (std::size_t i = 0; i < along.bend.size(); ++i) {
+        if (along.table[i].z < 8 || along.table[i].z > 40) continue;
+        CHECK(along.bend[i].tt == Approx(0).margin(0.02f));
+        CHECK(along.bend[i].bb == Approx(0.1f).margin(0.03f));
+    }
+}
+
+TEST_CASE("makeAnalogy: bent neighbourhoods, same bits for any number of threads", "[synth][determinism]") {
+    const Setting s = grooves();
+    VolumeAnalogyOptions bent = levels(1);
+    bent.bent = true;
+    RunContext one, three;
+    one.threads = 1;
+    three.threads = 3;
+    const auto made = [&](const VolumeAnalogyOptions& options, const RunContext& ctx) {
+        return test::samplesOf(makeAnalogy({s.pair()}, *s.target, s.targetFrames, options, ctx).distance);
+    };
+    CHECK(made(bent, one) == made(bent, three));
 }

@@ -7,6 +7,7 @@
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/pipeline/analogy.h"
 #include "libvdbsynth/pipeline/control.h"
+#include "libvdbsynth/pipeline/filter_analogy.h"
 #include "libvdbsynth/pipeline/outputs.h"
 
 #include <nlohmann/json.hpp>
@@ -33,6 +34,7 @@ AnalogyOptions parseOptions(const Arguments& arguments) {
     synthesis.coherence = arguments.real("coherence", 0.5, 0, 100);
     if (arguments.has("exact")) synthesis.slack = 0;
     synthesis.causal = arguments.has("causal");
+    synthesis.bent = arguments.has("bent");
     synthesis.aligned = !arguments.has("naive");
     options.scale = arguments.real("scale", 1, 0.25, 4);
     options.strength = arguments.real("strength", 1, 0, 1);
@@ -101,7 +103,8 @@ void report(Run& run, const AnalogyResult& result) {
                           {"components", level.components},
                           {"variance_explained", level.explained},
                           {"coherent_share", level.coherent},
-                          {"feature_distance", level.meanDistance}});
+                          {"feature_distance", level.meanDistance},
+                          {"feature_distance_exact", level.exactDistance}});
     run.count("levels", levels);
     run.count("texture_reach_voxels", result.reach);
     run.count("singularities", result.singularities.size());
@@ -113,6 +116,65 @@ void report(Run& run, const AnalogyResult& result) {
             "the direction field has " + std::to_string(result.singularities.size()) +
                 " singularities; near them a texture has no direction");
     run.describe(result.model);
+}
+
+FloatGridPtr loadNumbers(Run& run, const std::string& path, const std::string& grid) {
+    run.reserveOutputs();
+    const FloatGridPtr numbers = readVdbFloatGrid(path, grid, run.context);
+    run.noteInput(path);
+    if (!isGridOfNumbers(numbers))
+        throw Error(ErrorCode::Unusable, path +
+                                             ": is a level set, but the first input is a grid of numbers; "
+                                             "give --iso to make a level set of that, or numbers for all");
+    return numbers;
+}
+
+// --naive on grids of numbers: nothing is made a level set.
+bool isFilter(Run& run) {
+    const Arguments& arguments = run.arguments;
+    if (!arguments.has("naive") || arguments.has("iso") || extensionOf(arguments.inputs[0]) != "vdb")
+        return false;
+    return isGridOfNumbers(readVdbFloatGrid(arguments.inputs[0], "", run.context));
+}
+
+void reportFilter(Run& run, const FilterAnalogyStats& stats) {
+    run.count("rows", stats.rows);
+    run.count("change", stats.change);
+    run.count("affine_error", stats.affineError);
+    run.count("search_error", stats.searchError);
+    run.count("searched", stats.searched);
+    if (stats.change > 0)
+        message(run.context, MessageLevel::Note,
+                "on voxels held out the filter is off by " +
+                    std::to_string(std::min(stats.affineError, stats.searchError) / stats.change) +
+                    " of what it changes (root mean squares)");
+}
+
+void filter(Run& run, const VolumeAnalogyOptions& synthesis) {
+    const Arguments& arguments = run.arguments;
+    for (const char* name : {"scale", "strength", "mask", "carry", "source-map", "write-directions", "causal",
+                             "bent", "sweeps", "coherence", "coarse-samples", "adaptivity"})
+        if (arguments.has(name))
+            throw Error(ErrorCode::InvalidOption,
+                        "--" + std::string(name) + ": has no meaning for grids of numbers with --naive");
+    FilterAnalogyOptions options;
+    options.half = synthesis.half;
+    options.components = synthesis.components;
+    if (synthesis.levels > 0) options.levels = std::min(synthesis.levels, 4);
+    for (const std::string& path : run.outputPaths())
+        if (extensionOf(path) != "vdb")
+            throw Error(ErrorCode::InvalidOption, path + ": grids of numbers are written as .vdb");
+    std::vector<FilterGridPair> pairs;
+    for (std::size_t i = 0; i + 1 < arguments.inputs.size(); i += 2) {
+        const FloatGridPtr before = loadNumbers(run, arguments.inputs[i], "");
+        pairs.push_back({before, loadNumbers(run, arguments.inputs[i + 1], "")});
+    }
+    const FloatGridPtr target = loadNumbers(run, arguments.inputs.back(), arguments.text("grid"));
+    const FilterGridResult result = makeFilteredGrid(pairs, target, options, run.context);
+    for (const std::string& path : run.outputPaths())
+        writeVdb(run.outputs().add(path), {result.grid}, run.metadata());
+    reportFilter(run, result.stats);
+    run.finish();
 }
 
 void analogy(Run& run) {
@@ -127,6 +189,10 @@ void analogy(Run& run) {
     AnalogyOptions options = parseOptions(arguments);
     const std::vector<std::string> paths = run.outputPaths();
     requireOutputPaths(paths);
+    if (isFilter(run)) {
+        filter(run, options.synthesis);
+        return;
+    }
     const MapPlace place = mapPlaceOf(arguments, paths);
     if (options.keepDirections && !anyVdb(paths))
         throw Error(ErrorCode::InvalidOption,
@@ -174,8 +240,11 @@ const Command kAnalogy{
      {"coherence", "K", "how much going on from a neighbour counts over the best match, default 0.5"},
      {"exact", "", "the best match exactly, among reduced features (slower)"},
      {"causal", "", "of what is made only what lies behind a voxel counts, as in the paper"},
+     {"bent", "", "neighbourhoods bend along the surface, instead of straight cubes"},
      {"naive", "",
-      "neighbourhoods along the grid's axes, as the paper's first variant: for blur and the like"},
+      "neighbourhoods along the grid's axes, as the paper's first variant: for blur and the like; three "
+      "grids "
+      "of numbers (fog volumes, scalars) stay numbers"},
      {"write-directions", "", "also write the direction field into .vdb outputs, as `direction`"},
      mapOption(),
      carryOptions()[0],

@@ -1,0 +1,103 @@
+#include "libvdbsynth/pipeline/filter_analogy.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/coord.h"
+
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/Count.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace vdbsynth {
+namespace {
+
+constexpr float kAny = std::numeric_limits<float>::max();
+constexpr float kSame = 1e-5f;  // of the result's range: no different from the background
+
+IndexBox activeBox(const openvdb::FloatGrid& grid, const std::string& what) {
+    for (auto value = grid.cbeginValueOn(); value; ++value)
+        if (!std::isfinite(value.getValue()))
+            throw Error(ErrorCode::BadData,
+                        what + " holds values that are no numbers; set them to 0 before writing the file");
+    const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+    if (box.empty()) throw Error(ErrorCode::EmptyInput, what + " has no active voxel");
+    return fromBBox(box);
+}
+
+IndexBox widened(const IndexBox& box, int by) {
+    return {box.min - Index3{by, by, by}, box.max + Index3{by, by, by}};
+}
+
+void requireRoom(const IndexBox& box, const RunContext& ctx) {
+    requireMemory(ctx, double(box.volume()) * 20, "the filter", "crop the grids or use larger voxels");
+}
+
+// Voxels that differ from the background, which is what becomes of the target's.
+GridPtr gridOf(const BrickField& field, const IndexBox& box, const openvdb::FloatGrid& like) {
+    const bool fog = like.getGridClass() == openvdb::GRID_FOG_VOLUME;
+    const auto made = [&](float value) { return fog ? std::max(value, 0.f) : value; };
+    const float background = made(field.at({0, 0, 0}));
+    const openvdb::math::MinMax<float> range = openvdb::tools::minMax(like.tree());
+    const float same = kSame * std::max(range.max() - range.min(), 1e-30f);
+    const openvdb::FloatGrid::Ptr grid =
+        openvdb::FloatGrid::create(std::abs(background) < same ? 0.f : background);
+    openvdb::FloatGrid::Accessor to = grid->getAccessor();
+    const Index3 size = box.size();
+    std::vector<float> row(std::size_t(size.z));
+    for (int x = 0; x < size.x; ++x)
+        for (int y = 0; y < size.y; ++y) {
+            field.readBox({x, y, 0}, {1, 1, size.z}, row.data());
+            for (int z = 0; z < size.z; ++z) {
+                const float value = made(row[std::size_t(z)]);
+                if (std::abs(value - grid->background()) > same)
+                    to.setValue(toCoord(box.min + Index3{x, y, z}), value);
+            }
+        }
+    grid->setName(like.getName());
+    grid->setGridClass(like.getGridClass());
+    grid->setTransform(like.transform().copy());
+    return grid;
+}
+
+}  // namespace
+
+bool isGridOfNumbers(const FloatGridPtr& grid) {
+    return grid->getGridClass() != openvdb::GRID_LEVEL_SET;
+}
+
+FilterGridResult makeFilteredGrid(const std::vector<FilterGridPair>& pairs, const FloatGridPtr& target,
+                                  const FilterAnalogyOptions& options, const RunContext& ctx) {
+    const ThreadLimit limit(ctx);
+    const int reach = filterReach(options) + BrickField::kSide;
+    std::vector<BrickField> fields;
+    for (const FilterGridPair& pair : pairs) {
+        if (!(pair.before->transform() == pair.after->transform()))
+            throw Error(ErrorCode::ShapeMismatch,
+                        "the two grids of the pair must have the same voxels in the same place");
+        const IndexBox a = activeBox(*pair.before, "the pair's first grid"),
+                       b = activeBox(*pair.after, "the pair's second grid");
+        IndexBox box = a;
+        for (int axis = 0; axis < 3; ++axis) {
+            box.min[axis] = std::min(a.min[axis], b.min[axis]);
+            box.max[axis] = std::max(a.max[axis], b.max[axis]);
+        }
+        box = widened(box, reach);
+        requireRoom(box, ctx);
+        fields.push_back(gatherBricks(*pair.before, box, 1, kAny, ctx));
+        fields.push_back(gatherBricks(*pair.after, box, 1, kAny, ctx));
+    }
+    std::vector<FilterPair> given;
+    for (std::size_t p = 0; p < fields.size(); p += 2) given.push_back({&fields[p], &fields[p + 1]});
+    const IndexBox box = widened(activeBox(*target, "the target"), 2 * reach);
+    requireRoom(box, ctx);
+    const FilterAnalogyResult made =
+        makeFilterAnalogy(given, gatherBricks(*target, box, 1, kAny, ctx), options, ctx);
+    return {gridOf(made.after, box, *target), made.stats};
+}
+
+}  // namespace vdbsynth

@@ -1,0 +1,34 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/synth/filter_analogy.h"
+#include "libvdbsynth/vdb/vdb_fwd.h"
+
+#include <vector>
+
+namespace vdbsynth {
+
+/// Grids of numbers, such as densities, before and after a filter, in the same voxels.
+struct FilterGridPair {
+    FloatGridPtr before, after;
+};
+
+struct FilterGridResult {
+    GridPtr grid;  ///< of floats
+    FilterAnalogyStats stats;
+};
+
+/// Does to a grid of numbers what was done to others (synth/filter_analogy.h). Voxels of the result that
+/// differ from its background are active; a fog volume stays one, at least 0. Voxels count, not the world:
+/// the target may have other voxels than the pairs.
+/// @param target  any class but a level set; its name, class and transform are the result's
+/// @throw Error InvalidOption, ShapeMismatch (a pair's grids have different voxels), EmptyInput (no active
+/// voxel), BadData (a value that is no number), Unusable (too little to learn from), Memory, Cancelled
+/// @par Cost    see makeFilterAnalogy; memory about 20 bytes a voxel of the active box
+/// @par Repeats same bits for any number of threads
+FilterGridResult makeFilteredGrid(const std::vector<FilterGridPair>& pairs, const FloatGridPtr& target,
+                                  const FilterAnalogyOptions& options, const RunContext& ctx = {});
+
+/// True if a grid holds numbers that are no distances.
+bool isGridOfNumbers(const FloatGridPtr& grid);
+
+}  // namespace vdbsynth

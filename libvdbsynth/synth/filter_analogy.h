@@ -1,0 +1,50 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/grid/brick_field.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace vdbsynth {
+
+/// Numbers before and after something was done to them, over one box. Borrowed.
+struct FilterPair {
+    const BrickField *before = nullptr, *after = nullptr;
+};
+
+struct FilterAnalogyOptions {
+    int half = 2;         ///< a voxel is worked out from the (2 half + 1)^3 around it, 1..4, and
+    int levels = 3;       ///< at each further level from 3^3 places 2^level apart, smoothed as much; 1..4
+    int components = 16;  ///< principal axes that the search for what is not linear goes along, 4..256
+};
+
+struct FilterAnalogyStats {
+    std::size_t rows = 0;    ///< voxels of the pairs that were learnt from
+    double change = 0;       ///< root mean square of after - before, over held-out voxels
+    double affineError = 0;  ///< the same of after - what the affine map says
+    double searchError = 0;  ///< the same with the nearest row's rest added
+    bool searched = false;   ///< the rests are used: searchError was below affineError
+};
+
+struct FilterAnalogyResult {
+    BrickField after;
+    FilterAnalogyStats stats;
+};
+
+/// Learns what was done to numbers from before and after, and does it to others: the naive variant of
+/// [bhat2004, section 4.1], neighbourhoods along the grid's axes, for filters such as a blur that have no
+/// direction.
+/// Beyond the paper, which copies the value of the nearest neighbourhood: the affine map of the neighbourhood
+/// that fits best by least squares, which is exact for linear filters within its reach, plus, where that errs
+/// less on voxels held out (a quarter, in blocks of 16^3), what the map missed at the nearest row.
+/// @param target  anything over any box; outside of boxes values go on as they are at the border
+/// @throw Error InvalidOption, Unusable (fewer than 1000 voxels to learn from), Cancelled
+/// @par Cost    O(voxels that are not constant * samples), and a search each if the rests are used
+/// @par Repeats same bits for any number of threads
+FilterAnalogyResult makeFilterAnalogy(const std::vector<FilterPair>& pairs, const BrickField& target,
+                                      const FilterAnalogyOptions& options, const RunContext& ctx = {});
+
+/// How far from a voxel its neighbourhood goes, smoothing included. [voxels]
+int filterReach(const FilterAnalogyOptions& options);
+
+}  // namespace vdbsynth

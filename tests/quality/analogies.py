@@ -1,0 +1,216 @@
+#!/usr/bin/python3
+"""Puts the textures of `make`'s pairs on models and measures what came of it: the angle between grooves and the direction
+field, their spacing, the density of holes and whether they go through, the offset of a dilation. Prints a line for each.
+Usage: analogies.py BUILD_FOLDER [--analogy "OPTIONS"] [ROW...]
+A row is run if its name contains one of the words. Needs numpy, scipy, skimage and pyopenvdb."""
+import argparse
+import json
+import os
+import pathlib
+import shlex
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pyopenvdb as vdb
+import scipy.ndimage as ndimage
+from skimage.measure import euler_number
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+SAMPLES = pathlib.Path(os.environ.get("VDBSYNTH_SAMPLES", str(SOURCE.parent / "shared" / "data")))
+BAND = 12  # [voxels] half-width of what is measured
+APART = 2  # [spacings] from singularities that angles and spacings are taken at
+
+# name: (pair, target: a kind of `make` or a sample, its resolution, direction)
+ROWS = {
+    "grooves-bunny": ("grooves", "meshes/bunny.off", 200, "axis:z"),
+    "grooves-tori": ("grooves", "three-tori", 196, "around:z"),
+    "grooves-seahorse": ("grooves", "meshes/seahorse.obj", 227, "axis:z"),
+    "holes-tori": ("holes", "three-tori", 196, "around:z"),
+    "holes-bunny": ("holes", "meshes/bunny.off", 200, "axis:z"),
+    "dilation-bunny": ("dilation", "meshes/bunny.off", 200, "axis:z"),
+    "dilation-tori": ("dilation", "three-tori", 196, "around:z"),
+}
+
+
+class Model:
+    """Distances [voxels], positive outside, over one box, and the surface's voxels with their places and normals."""
+
+    def __init__(self, grid, low, high):
+        self.low = np.array(low)
+        dense = np.empty(tuple(np.array(high) - self.low + 1), np.float32)
+        grid.copyToArray(dense, ijk=tuple(int(v) for v in low))
+        self.distance = dense / grid.transform.voxelSize()[0]
+
+    def surface(self, inside=None):
+        """Places a voxel's width from the surface, moved onto it, and normals; without those outside `inside`."""
+        d = self.distance
+        voxels = np.argwhere(np.abs(d) < 0.5)
+        if inside is not None:
+            at = voxels + self.low
+            voxels = voxels[np.all((at >= inside[0]) & (at <= inside[1]), axis=1)]
+        slopes = np.stack([sample(np.gradient(d, axis=a), voxels.T) for a in range(3)], axis=1)
+        lengths = np.maximum(np.linalg.norm(slopes, axis=1), 1e-6)
+        normals = slopes / lengths[:, None]
+        return voxels - (d[tuple(voxels.T)] / lengths)[:, None] * normals, normals
+
+
+def sample(field, places):
+    return ndimage.map_coordinates(field, places, order=1, mode="nearest")
+
+
+def read(path, *others):
+    """Models of several files over one box that holds them all."""
+    grids = [next(g for g in vdb.readAll(str(p))[0] if g.name == "surface") for p in (path, *others)]
+    boxes = [g.evalActiveVoxelBoundingBox() for g in grids]
+    low = np.min([b[0] for b in boxes], axis=0) - 2
+    high = np.max([b[1] for b in boxes], axis=0) + 2
+    return [Model(g, low, high) for g in grids]
+
+
+def height(textured, places, normals):
+    """How deep below the plain surface the textured one is [voxels], and how that changes along the plain surface."""
+    value = sample(textured.distance, places.T)
+    slope = np.stack([sample(np.gradient(textured.distance, axis=a), places.T) for a in range(3)], axis=1)
+    return value, slope - (slope * normals).sum(axis=1)[:, None] * normals
+
+
+def spacing(value, slope, low, high):
+    """Area over the length of lines, by the coarea formula over contours from low to high: two to a line [voxels]."""
+    inside = (value > low) & (value < high)
+    length = np.linalg.norm(slope[inside], axis=1).sum() / (high - low) / 2
+    return len(value) / max(length, 1e-6)
+
+
+def angles(places, slope, direction, sigma, shape):
+    """Angle between lines and directions [degrees] and how much there is of a line, by the structure tensor."""
+    at = tuple(np.clip(np.rint(places).astype(int), 0, np.array(shape) - 1).T)
+    tensor = np.zeros((len(places), 3, 3))
+    for i in range(3):
+        for j in range(i, 3):
+            field = np.zeros(shape, np.float32)
+            np.add.at(field, at, slope[:, i] * slope[:, j])
+            tensor[:, i, j] = tensor[:, j, i] = ndimage.gaussian_filter(field, sigma, truncate=2.5)[at]
+    # The line runs along what is at right angles to the strongest change, within the surface.
+    strongest = np.linalg.eigh(tensor)[1][:, :, 2]
+    across = np.abs((strongest * direction).sum(axis=1))
+    return np.degrees(np.arcsin(np.clip(across, 0, 1))), np.trace(tensor, axis1=1, axis2=2)
+
+
+class Measurements:
+    def __init__(self, arguments):
+        self.program = str(pathlib.Path(arguments.build).resolve() / "tools/vdb_synth/vdb_synth")
+        self.folder = pathlib.Path(arguments.build).resolve() / "quality" / "analogies"
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self.options = shlex.split(arguments.analogy)
+
+    def tool(self, *words):
+        result = subprocess.run([self.program, *map(str, words), "-q"], cwd=self.folder, capture_output=True, text=True, check=False)
+        if result.returncode != 0:
+            raise RuntimeError(f"{' '.join(map(str, words))}: {result.stderr.strip()}")
+
+    def make(self, name, kind, target, resolution, direction):
+        """Makes pair, target and result; seconds taken and the report."""
+        self.tool("make", kind, "A.vdb", "A2.vdb", "--resolution", 64)
+        if "/" in target:
+            self.tool("convert", SAMPLES / target, "-o", "B.vdb", "--resolution", resolution, "--half-width", 4)
+        else:
+            self.tool("make", target, "B.vdb", "--resolution", resolution)
+        began = time.monotonic()
+        self.tool("analogy", "A.vdb", "A2.vdb", "B.vdb", "-o", f"{name}.vdb", "--direction", direction, "--half-width", BAND,
+                  "--write-directions", "--report", f"{name}.json", *self.options)
+        seconds = time.monotonic() - began
+        self.tool("render", f"{name}.vdb", "-o", f"{name}.png")
+        return seconds, json.loads((self.folder / f"{name}.json").read_text(encoding="utf-8"))
+
+    def pair(self):
+        """Heights and slopes of the pair, away from where it is cut off."""
+        for name in ("A", "A2"):  # what is made has a narrower band than its texture is deep
+            self.tool("convert", f"{name}.vdb", "-o", f"{name}w.vdb", "--half-width", BAND)
+        plain, textured = read(self.folder / "Aw.vdb", self.folder / "A2w.vdb")
+        domain = vdb.readAll(str(self.folder / "A.vdb"))[0][0]["vdbsynth:domain"]
+        corners = np.array([int(v) for v in domain.split(",")]).reshape(2, 3)
+        inside = (corners[0] + 6, corners[1] - 6)
+        places, normals = plain.surface(inside)
+        return (*height(textured, places, normals), plain, textured, places)
+
+    def run(self, name, kind, target, resolution, direction):
+        seconds, report = self.make(name, kind, target, resolution, direction)
+        plain, made = read(self.folder / "B.vdb", self.folder / f"{name}.vdb")
+        places, normals = plain.surface()
+        value, slope = height(made, places, normals)
+        print(f"{name:16} {seconds:5.1f} s  " + getattr(self, kind)(name, report, plain, made, places, value, slope), flush=True)
+
+    def grooves(self, name, report, plain, made, places, value, slope):
+        of_pair, pair_slope = self.pair()[:2]
+        deep = np.percentile(of_pair, 95)
+        low, high = 0.3 * deep, 0.7 * deep
+        expected = spacing(of_pair, pair_slope, low, high)
+        directions = [g for g in vdb.readAll(str(self.folder / f"{name}.vdb"))[0] if g.name == "direction"][0]
+        known = {item.min: item.value for item in directions.iterOnValues() if item.count == 1}
+        rows = [known.get(tuple(int(v) for v in np.rint(p + plain.low))) for p in places]
+        has = np.array([row is not None for row in rows])
+        direction = np.array([row if row is not None else (1, 0, 0) for row in rows], float)
+        far = np.ones(len(places), bool)
+        for world in report["counts"]["singularity_places"]:
+            at = np.array(directions.transform.worldToIndex(tuple(world))) - plain.low
+            far &= np.linalg.norm(places - at, axis=1) > APART * expected
+        angle, weight = angles(places, slope, direction, expected / 2, plain.distance.shape)
+        use = far & has
+        mean = np.average(angle[use], weights=weight[use])
+        found = spacing(value[far], slope[far], low, high)
+        return (f"angle {mean:4.1f} degrees  spacing {found:5.2f} of {expected:5.2f} voxels ({100 * (found / expected - 1):+.0f} %)  "
+                f"depth {np.percentile(value[far], 95):4.1f} of {deep:4.1f}  excluded {100 * (1 - far.mean()):4.1f} % at {len(report['counts']['singularity_places'])} singularities")
+
+    @staticmethod
+    def openings(value, places, shape, least=None):
+        """Parts of the plain surface that are open in the textured one, without those below `least` voxels."""
+        mask = np.zeros(shape, bool)
+        at = np.rint(places[value > 0.5]).astype(int)
+        mask[tuple(np.clip(at, 0, np.array(shape) - 1).T)] = True
+        labels, count = ndimage.label(mask, np.ones((3, 3, 3)))
+        sizes = np.bincount(labels[mask], minlength=count + 1)[1:]
+        if least is None:
+            least = np.median(sizes) / 4
+        return int((sizes >= least).sum()), least, np.median(sizes)
+
+    def holes(self, name, report, plain, made, places, value, slope):
+        of_pair, _, pair_plain, _, pair_places = self.pair()
+        count, least, usual = self.openings(of_pair, pair_places, pair_plain.distance.shape)
+        found, _, size = self.openings(value, places, plain.distance.shape, least)
+        expected = count / len(pair_places) * len(places)
+        before, after = (euler_number(m.distance < 0, connectivity=1) for m in (plain, made))
+        return (f"openings {found} of {expected:.0f} ({100 * (found / expected - 1):+.0f} %)  size {size:.0f} of {usual:.0f}  "
+                f"Euler characteristic of the solid {before} to {after}: {2 * (before - after) / max(found, 1):.2f} of the openings go through")
+
+    def dilation(self, name, report, plain, made, places, value, slope):
+        expected = -self.pair()[0]
+        error = -value - expected.mean()
+        return (f"offset {-value.mean():.2f} of {expected.mean():.2f} voxels: mean error {error.mean():+.2f}, "
+                f"root mean square {np.sqrt((error ** 2).mean()):.2f}, in the pair {expected.std():.2f}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build")
+    parser.add_argument("rows", nargs="*")
+    parser.add_argument("--analogy", default="", help="options to analogy, to choose defaults with")
+    arguments = parser.parse_intermixed_args()
+    measurements, failures = Measurements(arguments), 0
+    for name, row in ROWS.items():
+        if arguments.rows and not any(word in name for word in arguments.rows):
+            continue
+        if "/" in row[1] and not (SAMPLES / row[1]).exists():
+            print(f"{name:16} skipped: its sample is absent", flush=True)
+            continue
+        try:
+            measurements.run(name, *row)
+        except RuntimeError as error:
+            print(f"{name:16} failed: {error}", flush=True)
+            failures += 1
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -29,7 +29,7 @@ TEST_CASE("summarize: a missing face leaves four open edges, a flipped one four 
     CHECK(summarize(fan).nonManifoldEdges == 1);
 }
 
-TEST_CASE("appendPolygon: three, four and more corners; fewer are no face", "[geometry][degenerate]") {
+TEST_CASE("appendPolygon: three, four and more corners, fewer are no face", "[geometry][degenerate]") {
     Mesh mesh;
     const std::uint32_t corners[] = {0, 1, 2, 3, 4};
     appendPolygon(mesh, corners, 2);

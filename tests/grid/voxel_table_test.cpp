@@ -27,7 +27,7 @@ TEST_CASE("VoxelTable: holds exactly the wanted voxels, each with its number", "
     CHECK(count == table.size());
 }
 
-TEST_CASE("VoxelTable: the same numbers for any threads; nothing, and all of a constant field", "[grid]") {
+TEST_CASE("VoxelTable: the same numbers for any threads, nothing, and all of a constant field", "[grid]") {
     const BrickField field = test::ballsField({40, 24, 33}, 9, 3.f);
     RunContext one;
     one.threads = 1;
@@ -38,7 +38,7 @@ TEST_CASE("VoxelTable: the same numbers for any threads; nothing, and all of a c
     CHECK(VoxelTable::where(constant, [](float) { return false; }).size() == 0);
 }
 
-TEST_CASE("sampleTrilinear: exact for a linear field, also across bricks; clamped outside", "[grid]") {
+TEST_CASE("sampleTrilinear: exact for a linear field, also across bricks, clamped outside", "[grid]") {
     const BrickField field = test::fieldFrom(
         {20, 20, 20}, [](const Index3& p) { return float(2 * p.x) - float(p.y) + 0.5f * float(p.z); });
     for (std::uint64_t i = 0; i < 100; ++i) {

@@ -29,7 +29,7 @@ const char* const kPlain = R"({"attributes":{"POSITION":0},"indices":1})";
 
 }  // namespace
 
-TEST_CASE("glTF: attributes come back, in both forms; the same mesh gives the same bytes", "[io][property]") {
+TEST_CASE("glTF: attributes come back, in both forms, the same mesh gives the same bytes", "[io][property]") {
     const test::TemporaryFolder folder;
     Mesh mesh = test::sphereMesh(2, 2);
     Attribute colour{"Cd", 3, {}}, uv{"uv", 2, {}}, heat{"heat", 1, {}};
@@ -57,7 +57,7 @@ TEST_CASE("glTF: attributes come back, in both forms; the same mesh gives the sa
     }
 }
 
-TEST_CASE("glTF: nodes move, turn and mirror; buffers may be files; strips and fans", "[io][oracle]") {
+TEST_CASE("glTF: nodes move, turn and mirror, buffers may be files, strips and fans", "[io][oracle]") {
     const test::TemporaryFolder folder;
     folder.write("b.bin", triangleBytes());
     const Mesh moved = readMesh(folder.write(

@@ -133,7 +133,7 @@ TEST_CASE("localThickness: is the largest ball that holds the voxel, by search o
             }
 }
 
-TEST_CASE("localThickness: the same for any number of threads; shares sum to one", "[measure][determinism]") {
+TEST_CASE("localThickness: the same for any number of threads, shares sum to one", "[measure][determinism]") {
     const BrickField field = test::ballsField({50, 40, 45}, 2, 3.f, 12);
     RunContext one;
     one.threads = 1;

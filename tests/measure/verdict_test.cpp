@@ -40,7 +40,7 @@ TEST_CASE("statisticDistance: a curve's is the root of the mean square", "[measu
     CHECK(meanOf({a, b}).values == std::vector<double>{0, 1, 2, 4});
 }
 
-TEST_CASE("subVolumes: eight halves, nine columns, eight slices; none if too small", "[measure][oracle]") {
+TEST_CASE("subVolumes: eight halves, nine columns, eight slices, none if too small", "[measure][oracle]") {
     const IndexBox box{{4, 4, 4}, {67, 68, 69}};
     const std::vector<IndexBox> halves = subVolumes(box, {true, true, true}, 16);
     REQUIRE(halves.size() == 8);

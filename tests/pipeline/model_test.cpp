@@ -54,7 +54,7 @@ TEST_CASE("writeModel: one run writes every kind, the metadata and nothing befor
                          "a.doc: unknown extension"));
 }
 
-TEST_CASE("withHalfWidth: another band, the same surface; its own band is left alone",
+TEST_CASE("withHalfWidth: another band, the same surface, its own band is left alone",
           "[pipeline][property]") {
     const test::TemporaryFolder folder;
     writeMesh(folder.path("s.obj"), MeshFormat::Obj, test::sphereMesh(10, 4));

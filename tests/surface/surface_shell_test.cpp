@@ -31,7 +31,7 @@ TEST_CASE("surfaceShell: neighbours are mutual, and never across a thin wall", "
         }
 }
 
-TEST_CASE("surfaceShell: no surface is an error; threads change nothing", "[surface]") {
+TEST_CASE("surfaceShell: no surface is an error, threads change nothing", "[surface]") {
     const BrickField nothing(IndexBox::fromSize({16, 16, 16}), 5.f);
     CHECK(test::thrownBy([&] { surfaceShell(nothing); }).code == int(ErrorCode::EmptyInput));
     RunContext one;

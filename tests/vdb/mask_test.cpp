@@ -24,7 +24,7 @@ TEST_CASE("masks: box, ball, inside and range hold the voxels that they name", "
     CHECK(test::contains(test::thrownBy([&] { rangeMask(*grid, 2, 1); }).message, "--range"));
 }
 
-TEST_CASE("gatherMask: 1 where active, for grids of several types; vectors are refused", "[vdb][error]") {
+TEST_CASE("gatherMask: 1 where active, for grids of several types, vectors are refused", "[vdb][error]") {
     const BrickField field = gatherMask(*boxMask({{2, 2, 2}, {5, 5, 5}}, 1), {{0, 0, 0}, {9, 9, 9}},
                                         *openvdb::FloatGrid::create());
     for (int x = 0; x < 10; ++x) CHECK(field.at({x, 3, 3}) == (x >= 2 && x <= 5 ? 1.f : 0.f));

@@ -119,7 +119,7 @@ TEST_CASE("levelSetToMesh: sharp keeps the edges and corners of a turned box", "
     CHECK(summarize(sourced).signedVolume == Approx(14 * 10 * 8).epsilon(1e-3));
 }
 
-TEST_CASE("levelSetToMesh: sharp leaves smooth surfaces smooth; same bits for any threads",
+TEST_CASE("levelSetToMesh: sharp leaves smooth surfaces smooth, same bits for any threads",
           "[vdb][property][threads]") {
     openvdb::initialize();
     const FloatGridPtr levelSet = meshToLevelSet(test::sphereMesh(10, 5), 0.5, 3, "sphere");

@@ -1,5 +1,6 @@
 #pragma once
 #include "libvdbsynth/pipeline/analogy.h"
+#include "libvdbsynth/vdb/redistance.h"
 
 #include <memory>
 
@@ -16,6 +17,27 @@ struct FieldPlace {
     /// Of a direction, in voxels.
     Vec3d fromWorldDirection(const Vec3d& direction) const;
 };
+
+inline constexpr int kMostReach = 40;  ///< [voxels] that a texture may go from its plain surface
+
+/// Which faces of its recorded domain a solid goes through.
+CutFaces facesTouched(const LevelSet& model);
+/// A domain with room at the faces that are no cuts.
+IndexBox grown(const IndexBox& domain, const CutFaces& cut, int by);
+
+/// A pair as fields over one box, at the texture's scale.
+struct PairFields {
+    std::shared_ptr<const BrickField> plain, textured;
+    IndexBox box;    ///< index space of the pair
+    IndexBox inner;  ///< of the fields
+    FieldPlace place;
+};
+
+/// @throw Error ShapeMismatch (other voxels, or no overlap), Memory
+PairFields gatherPair(const AnalogyModelPair& pair, double scale, const RunContext& ctx);
+
+/// How far from the plain surface the textured one goes. [voxels]
+float reachOf(const BrickField& plain, const BrickField& textured);
 
 /// Frames around a field's surface by a source of directions.
 /// @param what  "the target" or the like, for messages

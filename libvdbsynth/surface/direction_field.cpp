@@ -10,7 +10,8 @@
 namespace vdbsynth {
 namespace {
 
-constexpr float kTooSteep = 0.71f;  // sine of 30 degrees
+constexpr float kTooSteep = 0.17f;  // sine of 10 degrees
+constexpr float kTrusted = 0.82f;   // sine of 55 degrees
 constexpr float kSingular = 0.7f;   // length of the mean direction
 constexpr int kRounds = 40;         // of averaging, at every resolution
 
@@ -104,6 +105,32 @@ void diffuseAll(Graph& graph, std::vector<Index3> places, const RunContext& ctx)
     diffuse(graph, ctx);
 }
 
+// How flat a direction has to lie to be kept: as kTrusted says, or less on a part of the surface of which not
+// a quarter has it so flat: a slope, or where little is given.
+std::vector<float> leastSines(const SurfaceShell& shell, const std::vector<float>& sine) {
+    std::vector<float> least(shell.size(), -1);
+    std::vector<std::uint32_t> part;
+    for (std::uint32_t i = 0; i < shell.size(); ++i) {
+        if (least[i] >= 0) continue;
+        part.assign(1, i);
+        least[i] = 0;
+        std::vector<float> sines;
+        for (std::size_t k = 0; k < part.size(); ++k) {
+            sines.push_back(sine[part[k]]);
+            for (std::uint32_t n = shell.begin[part[k]]; n < shell.begin[part[k] + 1]; ++n) {
+                const std::uint32_t j = shell.neighbours[n];
+                if (least[j] >= 0) continue;
+                least[j] = 0;
+                part.push_back(j);
+            }
+        }
+        const auto quarter = sines.begin() + std::ptrdiff_t(sines.size() - 1 - sines.size() / 4);
+        std::nth_element(sines.begin(), quarter, sines.end());
+        for (std::uint32_t j : part) least[j] = std::max(std::min(kTrusted, 0.9f * *quarter), kTooSteep);
+    }
+    return least;
+}
+
 // One place of each connected part of the voxels that are marked.
 std::vector<Vec3f> partsOf(const SurfaceShell& shell, std::vector<char> marked) {
     std::vector<Vec3f> places;
@@ -138,10 +165,14 @@ DirectionField directionField(const SurfaceShell& shell, const std::vector<Vec3f
     graph.direction.resize(shell.size());
     graph.fixed.assign(shell.size(), 0);
     DirectionField field;
+    std::vector<float> sine(shell.size());
+    for (std::size_t i = 0; i < shell.size(); ++i)
+        if (dot(given[i], given[i]) > 0)
+            sine[i] = length(inTangentPlane(normalized(given[i]), shell.normal[i]));
+    const std::vector<float> least = leastSines(shell, sine);
     for (std::size_t i = 0; i < shell.size(); ++i) {
-        const Vec3f flat = inTangentPlane(normalized(given[i]), shell.normal[i]);
-        if (!(length(flat) > kTooSteep)) continue;
-        graph.direction[i] = normalized(flat);
+        if (!(sine[i] > least[i])) continue;
+        graph.direction[i] = normalized(inTangentPlane(given[i], shell.normal[i]));
         graph.fixed[i] = 1;
         ++field.known;
     }

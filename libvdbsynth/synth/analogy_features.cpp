@@ -8,19 +8,37 @@ namespace {
 
 constexpr float kDepthWeight = 1;  // of a voxel of depth beside a sample that differs from empty to full
 
-// The part of a field around a place, copied once, so that a hundred interpolations need not find their
+// Where a column of the cube stands, and along what.
+struct Column {
+    Vec3f foot, along;
+};
+
+// The part of a field around columns, copied once, so that a hundred interpolations need not find their
 // bricks.
 class Window {
 public:
-    Window(const BrickField& field, const Vec3f& at, int reach) {
-        mSide = 2 * reach + 2;
-        mCorner = {int(std::floor(at.x)) - reach, int(std::floor(at.y)) - reach,
-                   int(std::floor(at.z)) - reach};
-        mSamples.resize(std::size_t(mSide) * std::size_t(mSide) * std::size_t(mSide));
+    Window(const BrickField& field, const std::vector<Column>& columns, float half) {
+        Vec3f low = columns.front().foot, high = low;
+        for (const Column& column : columns)
+            for (int axis = 0; axis < 3; ++axis) {
+                const float reach = std::abs(column.along[axis]) * half;
+                low[axis] = std::min(low[axis], column.foot[axis] - reach);
+                high[axis] = std::max(high[axis], column.foot[axis] + reach);
+            }
+        Index3 size;
+        for (int axis = 0; axis < 3; ++axis) {
+            // Rounding may take a sample a hair over; a voxel of the far side is never read.
+            mCorner[axis] = int(std::floor(low[axis] - 1e-3f));
+            size[axis] = int(std::floor(high[axis] + 1e-3f)) - mCorner[axis] + 2;
+        }
+        mRow = size.z;
+        mSlice = size.y * size.z;
         float value = 0;
-        mConstant = field.constantIn(IndexBox::cube(mCorner, mSide), value);
+        mConstant = field.constantIn({mCorner, mCorner + size - Index3{1, 1, 1}}, value);
         mValue = value;
-        if (!mConstant) field.readBox(mCorner, {mSide, mSide, mSide}, mSamples.data());
+        if (mConstant) return;
+        mSamples.resize(std::size_t(size.x) * std::size_t(mSlice));
+        field.readBox(mCorner, size, mSamples.data());
     }
 
     float at(const Vec3f& p) const {
@@ -28,8 +46,8 @@ public:
         const float x = p.x - float(mCorner.x), y = p.y - float(mCorner.y), z = p.z - float(mCorner.z);
         const int ix = int(x), iy = int(y), iz = int(z);
         const float fx = x - float(ix), fy = y - float(iy), fz = z - float(iz);
-        const float* v = mSamples.data() + (ix * mSide + iy) * mSide + iz;
-        const float *w = v + mSide, *u = v + mSide * mSide, *t = u + mSide;
+        const float* v = mSamples.data() + ix * mSlice + iy * mRow + iz;
+        const float *w = v + mRow, *u = v + mSlice, *t = u + mRow;
         const auto mix = [](float a, float b, float f) { return a + (b - a) * f; };
         const float low = mix(mix(v[0], v[1], fz), mix(w[0], w[1], fz), fy),
                     high = mix(mix(u[0], u[1], fz), mix(t[0], t[1], fz), fy);
@@ -37,7 +55,7 @@ public:
     }
 
 private:
-    int mSide = 0;
+    int mRow = 0, mSlice = 0;
     Index3 mCorner;
     bool mConstant = false;
     float mValue = 0;
@@ -48,11 +66,6 @@ private:
         thread_local std::vector<float> samples;
         return samples;
     }
-};
-
-// Where a column of the cube stands, and along what.
-struct Column {
-    Vec3f foot, along;
 };
 
 Column columnAt(const Vec3f& at, const Frame& frame, const Bend& bend, float t, float b) {
@@ -66,16 +79,16 @@ Column columnAt(const Vec3f& at, const Frame& frame, const Bend& bend, float t, 
 // Samples of the cube of steps along the frame's axes, up to lastAlong along t; t slowest, n fastest.
 float* sampleCube(const BrickField& field, const Vec3f& at, const Frame& frame, const Bend& bend, int half,
                   int lastAlong, bool middleToo, float* out) {
-    // Corners of a cube of half 2 are 3.5 away, in any turn; of one that bends most, 4.4.
-    const bool bent = bend.tt != 0 || bend.tb != 0 || bend.bb != 0;
-    const Window window(field, at, int(std::ceil(float(half) * (bent ? 2.4f : 1.7321f))));
+    thread_local std::vector<Column> columns;
+    columns.clear();
     for (int t = -half; t <= lastAlong; ++t)
-        for (int b = -half; b <= half; ++b) {
-            const Column column = columnAt(at, frame, bend, float(t), float(b));
-            for (int n = -half; n <= half; ++n)
-                if (middleToo || t != 0 || b != 0 || n != 0)
-                    *out++ = window.at(column.foot + column.along * float(n));
-        }
+        for (int b = -half; b <= half; ++b) columns.push_back(columnAt(at, frame, bend, float(t), float(b)));
+    const Window window(field, columns, float(half));
+    const std::size_t middle = std::size_t(half * (2 * half + 1) + half);
+    for (std::size_t c = 0; c < columns.size(); ++c)
+        for (int n = -half; n <= half; ++n)
+            if (middleToo || c != middle || n != 0)
+                *out++ = window.at(columns[c].foot + columns[c].along * float(n));
     return out;
 }
 

@@ -17,6 +17,7 @@ namespace {
 constexpr std::size_t kMostFitted = 60000;    // rows that maps and axes are made from
 constexpr std::size_t kMostIndexed = 250000;  // rows that are searched
 constexpr std::size_t kLeast = 1000;          // rows, or there is nothing to learn from
+constexpr std::size_t kAlike = 64;            // one of so many rows that are the same throughout is kept
 constexpr int kHeldBlock = 4;                 // log2 of the side of what is held out
 constexpr double kWorth = 0.98;               // of the affine map's error that a search must stay below
 constexpr float kAnyDistance = 1e30f;
@@ -205,6 +206,10 @@ private:
             const FilterPair& pair = mPairs[mBricks[b].pair];
             if (!pair.before->box().contains(p)) continue;
             const auto at = vectors.begin() + std::ptrdiff_t(i * length);
+            // Empty and full neighbourhoods are many and all alike; a search among them is a scan.
+            const bool alike =
+                std::all_of(at, at + std::ptrdiff_t(length), [&](float v) { return v == *at; });
+            if (alike && i / step % kAlike != 0) continue;
             rows.vectors.insert(rows.vectors.end(), at, at + std::ptrdiff_t(length));
             rows.before.push_back(pair.before->inside(p));
             rows.after.push_back(pair.after->at(p));

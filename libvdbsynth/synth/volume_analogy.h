@@ -26,7 +26,8 @@ struct VolumeAnalogyOptions {
     double coherence = 0.5;
     double slack = 4;  ///< FeatureIndex::nearest's; 0: exact; 4 is 0.6 % farther on average and twice as fast
     bool causal = false;  ///< true: of what is made only what lies behind a voxel counts, as in the paper
-    bool bent = false;    ///< true: neighbourhoods follow the surface's curvature instead of a straight cube
+    bool bent =
+        true;  ///< neighbourhoods follow the surface's curvature; false: straight cubes, as in the paper
     bool aligned = true;  ///< false: the paper's naive variant, neighbourhoods along the grid's axes
 };
 
@@ -64,7 +65,7 @@ struct VolumeAnalogyResult {
 ///  - every pair has at least kRoom voxels along two axes, of which neighbourhoods take eight.
 int usefulLevels(const std::vector<AnalogyPair>& pairs, const RunContext& ctx = {});
 inline constexpr double kHeld = 0.55;
-inline constexpr int kRoom = 20;  ///< [voxels of the level]
+inline constexpr int kRoom = 36;  ///< [voxels of the level]
 
 /// B' such that plain : textured = target : B' [bhat2004]: coarse to fine, voxels in the order of the sweep
 /// distance, each takes the value of the voxel of the textured model whose feature is nearest.

@@ -133,6 +133,23 @@ class Bench:
                 result = self.tool("synth", "exemplar.vdb", "-o", "more.vdb", "--size", "8x,8x,8x", timeout=1800)
                 self.row(name, "180 s, 4 GB", f"{result[0]:.0f} s, {result[1] / 1e9:.2f} GB", "none", "")
 
+    def analogy(self):
+        name, path = "analogy grooves bunny 200", os.path.join(SAMPLES, "meshes", "bunny.off")
+        if not self.wanted(name) or not os.path.exists(path):
+            return
+        with self.attempt(name):
+            self.tool("make", "grooves", "A.vdb", "A2.vdb")
+            result = self.tool("analogy", "A.vdb", "A2.vdb", path, "-o", "grooved.vdb", "--resolution", 200, "--direction", "axis:z")
+            self.tool("convert", path, "-o", "bunny.vdb", "--resolution", 200)
+            bench = subprocess.run([str(pathlib.Path(self.match).parent / "analogy_bench"), "bunny.vdb"], cwd=self.folder, capture_output=True,
+                                   text=True, check=True)
+            found = json.loads(bench.stdout)
+            self.row(name, "30 s, 10x under FLANN", f"{result[0]:.1f} s, {result[1] / 1e9:.2f} GB", f"{found['flann_seconds']:.0f} s of queries",
+                     f"{found['flann_seconds'] / result[0]:.1f}x",
+                     f"synthesis alone {found['seconds']:.1f} s; a query {found['index_query_us']:.2f} us, FLANN's {found['flann_query_us']:.1f} us; "
+                     f"feature distance over the exact one: index {found['distance_over_exact_index']:.3f}, FLANN {found['distance_over_exact_flann']:.3f}, "
+                     f"copied {found['distance_over_exact_copied']:.3f}")
+
     def compare(self):
         for kind in ("balls", "sponge", "terrain"):
             name = f"compare {kind} 256^3"
@@ -195,7 +212,7 @@ class Bench:
         machine = f"{models[0] if models else platform.processor()}, {os.cpu_count()} cores"
         print(machine)
         print(f"{'row':34} {'budget':26} {'measured':26} {'rival':22} {'ratio':8} note")
-        for part in (self.meshes, self.synthesis, self.compare, self.block_match, self.growth_curves):
+        for part in (self.meshes, self.synthesis, self.analogy, self.compare, self.block_match, self.growth_curves):
             part()
         shutil.rmtree(self.folder, ignore_errors=True)
         return {"machine": machine, "rows": self.rows, "growth": self.growth, "failures": self.failures}

@@ -73,6 +73,7 @@ TEST_CASE("makeFilteredGrid: what it refuses", "[pipeline][error]") {
     CHECK(test::contains(thrown(empty, before, target).message, "first grid"));
     RunContext small;
     small.maxMemory = 1000;
-    CHECK(test::thrownBy([&] { makeFilteredGrid({{before, before}}, target, {}, small); }).code ==
-          int(ErrorCode::Memory));
+    CHECK(test::thrownBy([&] {
+              makeFilteredGrid({{before, before}}, target, {}, small);
+          }).code == int(ErrorCode::Memory));
 }

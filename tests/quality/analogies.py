@@ -28,6 +28,8 @@ ROWS = {
     "grooves-tori": ("grooves", "three-tori", 196, "around:z"),
     "grooves-seahorse": ("grooves", "meshes/seahorse.obj", 227, "axis:z"),
     "holes-tori": ("holes", "three-tori", 196, "around:z"),
+    "pits-tori": ("pits", "three-tori", 196, "around:z"),
+    "spikes-bunny": ("spikes", "meshes/bunny.off", 200, "axis:z"),
     "holes-bunny": ("holes", "meshes/bunny.off", 200, "axis:z"),
     "dilation-bunny": ("dilation", "meshes/bunny.off", 200, "axis:z"),
     "dilation-tori": ("dilation", "three-tori", 196, "around:z"),
@@ -124,16 +126,16 @@ class Measurements:
         self.tool("render", f"{name}.vdb", "-o", f"{name}.png")
         return seconds, json.loads((self.folder / f"{name}.json").read_text(encoding="utf-8"))
 
-    def pair(self):
-        """Heights and slopes of the pair, away from where it is cut off."""
+    def pair(self, margin=6):
+        """Heights and slopes of the pair, `margin` voxels from where it is cut off."""
         for name in ("A", "A2"):  # what is made has a narrower band than its texture is deep
             self.tool("convert", f"{name}.vdb", "-o", f"{name}w.vdb", "--half-width", BAND)
         plain, textured = read(self.folder / "Aw.vdb", self.folder / "A2w.vdb")
         domain = vdb.readAll(str(self.folder / "A.vdb"))[0][0]["vdbsynth:domain"]
         corners = np.array([int(v) for v in domain.split(",")]).reshape(2, 3)
-        inside = (corners[0] + 6, corners[1] - 6)
+        inside = (corners[0] + margin, corners[1] - margin)
         places, normals = plain.surface(inside)
-        return (*height(textured, places, normals), plain, textured, places)
+        return (*height(textured, places, normals), plain, textured, places, inside - plain.low)
 
     def run(self, name, kind, target, resolution, direction):
         seconds, report = self.make(name, kind, target, resolution, direction)
@@ -164,25 +166,41 @@ class Measurements:
                 f"depth {np.percentile(value[far], 95):4.1f} of {deep:4.1f}  excluded {100 * (1 - far.mean()):4.1f} % at {len(report['counts']['singularity_places'])} singularities")
 
     @staticmethod
-    def openings(value, places, shape, least=None):
-        """Parts of the plain surface that are open in the textured one, without those below `least` voxels."""
+    def openings(value, places, shape):
+        """Parts of the plain surface that are open in the textured one: their sizes [voxels] and middles."""
         mask = np.zeros(shape, bool)
         at = np.rint(places[value > 0.5]).astype(int)
         mask[tuple(np.clip(at, 0, np.array(shape) - 1).T)] = True
         labels, count = ndimage.label(mask, np.ones((3, 3, 3)))
         sizes = np.bincount(labels[mask], minlength=count + 1)[1:]
-        if least is None:
-            least = np.median(sizes) / 4
-        return int((sizes >= least).sum()), least, np.median(sizes)
+        return sizes, np.array(ndimage.center_of_mass(mask, labels, range(1, count + 1)))
+
+    def density(self, plain, places, value, sign=1):
+        """Parts of the plain surface that the texture opens, or covers where sign is -1: how many were found, and a text."""
+        of_pair, _, pair_plain, _, pair_places, inside = self.pair(0)
+        sizes, middles = self.openings(sign * of_pair, pair_places, pair_plain.distance.shape)
+        # An opening counts where its middle is, so that those that the pair's border cuts count in part, as they should.
+        corners = inside + np.array([[8], [-8]])
+        within = lambda at: np.all((at >= corners[0]) & (at <= corners[1]), axis=1)
+        usual = np.median(sizes[within(middles)])
+        count = int((within(middles) & (sizes >= usual / 4)).sum())
+        of_made = self.openings(sign * value, places, plain.distance.shape)[0]
+        of_made = of_made[of_made >= usual / 4]
+        found, size = len(of_made), np.median(of_made)
+        expected = count / within(pair_places).sum() * len(places)
+        return found, (f"{'openings' if sign > 0 else 'bumps'} {found} of {expected:.0f} ({100 * (found / expected - 1):+.0f} %)  "
+                       f"size {size:.0f} of {usual:.0f}  {count} in the pair  ")
+
+    def pits(self, name, report, plain, made, places, value, slope):
+        return self.density(plain, places, value)[1]
+
+    def spikes(self, name, report, plain, made, places, value, slope):
+        return self.density(plain, places, value, -1)[1]
 
     def holes(self, name, report, plain, made, places, value, slope):
-        of_pair, _, pair_plain, _, pair_places = self.pair()
-        count, least, usual = self.openings(of_pair, pair_places, pair_plain.distance.shape)
-        found, _, size = self.openings(value, places, plain.distance.shape, least)
-        expected = count / len(pair_places) * len(places)
+        found, text = self.density(plain, places, value)
         before, after = (euler_number(m.distance < 0, connectivity=1) for m in (plain, made))
-        return (f"openings {found} of {expected:.0f} ({100 * (found / expected - 1):+.0f} %)  size {size:.0f} of {usual:.0f}  "
-                f"Euler characteristic of the solid {before} to {after}: {2 * (before - after) / max(found, 1):.2f} of the openings go through")
+        return (text + f"Euler characteristic of the solid {before} to {after}: {(before - after) / max(found, 1):.2f} tunnels an opening")
 
     def dilation(self, name, report, plain, made, places, value, slope):
         expected = -self.pair()[0]

@@ -50,7 +50,7 @@ TEST_CASE("directionField: what lies along the normal everywhere is an error", "
     }
 }
 
-TEST_CASE("directionField: the same for any threads; stops when asked to", "[surface][tsan]") {
+TEST_CASE("directionField: the same for any threads, stops when asked to", "[surface][tsan]") {
     const SurfaceShell shell = surfaceShell(*test::sphereField(40, 14));
     std::vector<Vec3f> given(shell.size());
     given[10] = {1, 0.5f, 0};
@@ -82,4 +82,26 @@ TEST_CASE("curvatureDirections: along a cylinder, round nothing, and silent on a
     const SurfaceShell plane = surfaceShell(*test::planeField(32, 15.4));
     const std::vector<Vec3f> none = curvatureDirections(plane);
     CHECK(std::all_of(none.begin(), none.end(), [](const Vec3f& d) { return length(d) == 0; }));
+}
+
+TEST_CASE("directionField: a part of the surface that an axis meets steeply still follows it", "[surface]") {
+    // A plane that falls away so that the axis lies 30 degrees off its normal.
+    const SurfaceShell shell = surfaceShell(*test::shapeField(
+        {40, 40, 40}, [](const Vec3d& p) { return 0.5 * (p.x - 20) + 0.866025403784 * (p.z - 20); }));
+    const DirectionField field = directionField(shell, alongAll(shell, {0, 0, 1}));
+    CHECK(field.singularities.empty());
+    for (std::size_t i = 0; i < shell.size(); ++i) {
+        // At the border of the box gradients are one-sided.
+        const Vec3f& p = shell.point[i];
+        if (std::min({p.x, p.y, p.z}) > 2 && std::max({p.x, p.y, p.z}) < 37)
+            CHECK(std::abs(field.tangent[i].z) == Approx(0.5).margin(0.05));
+    }
+}
+
+TEST_CASE("directionField: bumps on a ball add no singularities", "[surface]") {
+    const SurfaceShell shell = surfaceShell(*test::shapeField({64, 64, 64}, [](const Vec3d& p) {
+        const Vec3d d = p - Vec3d{31.5, 31.5, 31.5};
+        return length(d) - 24 - 1.5 * std::cos(d.x / 2.5) * std::cos(d.y / 2.5);
+    }));
+    CHECK(directionField(shell, alongAll(shell, {0, 0, 1})).singularities.size() <= 4);
 }

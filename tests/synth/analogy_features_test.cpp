@@ -82,14 +82,13 @@ TEST_CASE("DepthClasses: open where depths near by do not agree", "[synth]") {
     CHECK_FALSE(depths.full(5));
 }
 
-TEST_CASE("Features: bent along a ball they are those of a plane, straight ones are not", "[synth][property]") {
-    const auto density = [](double distance) { return float(std::clamp(0.5 - distance / 2, 0.0, 1.0)); };
+TEST_CASE("Features: bent along a ball they are those of a plane, straight ones are not",
+          "[synth][property]") {
     constexpr double kRadius = 8;
     const BrickField ball = test::fieldFrom({32, 32, 32}, [&](const Index3& p) {
-        return density(std::hypot(p.x - 16, p.y - 16, p.z - 16) - kRadius);
+        return float(std::hypot(p.x - 16, p.y - 16, p.z - 16) - kRadius);
     });
-    const BrickField plane =
-        test::fieldFrom({32, 32, 32}, [&](const Index3& p) { return density(p.z - 16.0); });
+    const BrickField plane = test::fieldFrom({32, 32, 32}, [&](const Index3& p) { return float(p.z - 16); });
     FeatureShape shape;
     shape.coarse = false;
     std::vector<float> flat(shape.rest()), straight(shape.rest()), bent(shape.rest());

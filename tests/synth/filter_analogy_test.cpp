@@ -32,8 +32,8 @@ BrickField balls(std::uint64_t seed, int side) {
 template <typename Of>
 BrickField eachNeighbourhood(const BrickField& field, int half, const Of& of) {
     const int side = 2 * half + 1;
-    std::vector<float> samples(std::size_t(side * side * side));
     return test::fieldFrom(field.box().size(), [&](const Index3& p) {
+        std::vector<float> samples(std::size_t(side * side * side));
         field.readBox(p - Index3{half, half, half}, {side, side, side}, samples.data());
         return of(samples, side);
     });
@@ -102,7 +102,7 @@ TEST_CASE("makeFilterAnalogy: the search learns what is not linear", "[synth]") 
     CHECK(made.stats.searchError < made.stats.affineError);
     const double error = missed(made.after, wanted, target);
     CAPTURE(error, made.stats.affineError / made.stats.change, made.stats.searchError / made.stats.change);
-    CHECK(error < 0.25);
+    CHECK(error < 0.6 * made.stats.affineError / made.stats.change);
 }
 
 TEST_CASE("makeFilterAnalogy: same bits for any number of threads", "[synth][determinism]") {
@@ -131,7 +131,7 @@ TEST_CASE("makeFilterAnalogy: what it refuses", "[synth][error]") {
     CHECK(code(before, 2, 3, 3) == int(ErrorCode::InvalidOption));
 }
 
-TEST_CASE("makeFilterAnalogy: can be stopped; a constant target stays one", "[synth]") {
+TEST_CASE("makeFilterAnalogy: a constant target stays one, and it can be stopped", "[synth]") {
     const BrickField before = balls(1, 40), after = blurred(before, 1, 2);
     const BrickField constant(IndexBox::fromSize({20, 20, 20}), 1);
     const FilterAnalogyResult made = makeFilterAnalogy({{&before, &after}}, constant, {});
@@ -140,6 +140,7 @@ TEST_CASE("makeFilterAnalogy: can be stopped; a constant target stays one", "[sy
     RunContext ctx;
     std::atomic<bool> stop{true};
     ctx.cancel = &stop;
-    CHECK(test::thrownBy([&] { makeFilterAnalogy({{&before, &after}}, before, {}, ctx); }).code ==
-          int(ErrorCode::Cancelled));
+    CHECK(test::thrownBy([&] {
+              makeFilterAnalogy({{&before, &after}}, before, {}, ctx);
+          }).code == int(ErrorCode::Cancelled));
 }

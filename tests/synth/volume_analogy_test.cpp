@@ -127,8 +127,8 @@ TEST_CASE("makeAnalogy: refuses what it cannot work with, and stops when asked t
 }
 
 TEST_CASE("usefulLevels: thin things hold fewer", "[synth]") {
-    // A level has to be 20 voxels wide: three are no use to a field of 64.
-    for (const auto& [side, levels] : {std::pair{96, 3}, std::pair{64, 2}, std::pair{36, 1}}) {
+    // A level has to be 36 voxels wide: two are no use to a field of 64.
+    for (const auto& [side, levels] : {std::pair{144, 3}, std::pair{96, 2}, std::pair{64, 1}}) {
         const auto flat = test::planeField(side, 20), step = test::planeField(side, 26);
         const FrameField along = framesAlong(flat, {1, 0, 0});
         CHECK(usefulLevels({{flat, step, &along, flat->box()}}) == levels);
@@ -146,8 +146,7 @@ TEST_CASE("analogyVoxels: bends are those of the surface through a voxel", "[syn
     const auto bends = [](std::shared_ptr<const BrickField> field, const Vec3f& along, int level) {
         const FrameField frames = framesAlong(field, along);
         const BrickField coarse = analogyPyramid(*field, level + 1, {}).distance.back();
-        return analogyVoxels(VoxelTable::where(
-                                 coarse, [](float d) { return d > -0.5f && d < 0.5f; }, {}),
+        return analogyVoxels(VoxelTable::where(coarse, [](float d) { return d > -0.5f && d < 0.5f; }, {}),
                              frames, level, true, true, {});
     };
     for (int level : {0, 1}) {

@@ -7,5 +7,5 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 tools/dev/packages.sh bench
 cmake --preset release -DVDBSYNTH_BUILD_BENCHMARKS=ON >/dev/null
-cmake --build --preset release --target vdb_synth block_match_bench
+cmake --build --preset release --target vdb_synth block_match_bench analogy_bench
 exec /usr/bin/python3 tests/bench/bench.py build/release "$@"

@@ -34,7 +34,7 @@ AnalogyOptions parseOptions(const Arguments& arguments) {
     synthesis.coherence = arguments.real("coherence", 0.5, 0, 100);
     if (arguments.has("exact")) synthesis.slack = 0;
     synthesis.causal = arguments.has("causal");
-    synthesis.bent = arguments.has("bent");
+    synthesis.bent = !arguments.has("straight");
     synthesis.aligned = !arguments.has("naive");
     options.scale = arguments.real("scale", 1, 0.25, 4);
     options.strength = arguments.real("strength", 1, 0, 1);
@@ -153,7 +153,7 @@ void reportFilter(Run& run, const FilterAnalogyStats& stats) {
 void filter(Run& run, const VolumeAnalogyOptions& synthesis) {
     const Arguments& arguments = run.arguments;
     for (const char* name : {"scale", "strength", "mask", "carry", "source-map", "write-directions", "causal",
-                             "bent", "sweeps", "coherence", "coarse-samples", "adaptivity"})
+                             "straight", "sweeps", "coherence", "coarse-samples", "adaptivity"})
         if (arguments.has(name))
             throw Error(ErrorCode::InvalidOption,
                         "--" + std::string(name) + ": has no meaning for grids of numbers with --naive");
@@ -240,7 +240,8 @@ const Command kAnalogy{
      {"coherence", "K", "how much going on from a neighbour counts over the best match, default 0.5"},
      {"exact", "", "the best match exactly, among reduced features (slower)"},
      {"causal", "", "of what is made only what lies behind a voxel counts, as in the paper"},
-     {"bent", "", "neighbourhoods bend along the surface, instead of straight cubes"},
+     {"straight", "",
+      "neighbourhoods are straight cubes, as in the paper, and do not bend along the surface"},
      {"naive", "",
       "neighbourhoods along the grid's axes, as the paper's first variant: for blur and the like; three "
       "grids "

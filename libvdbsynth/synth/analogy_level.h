@@ -8,8 +8,8 @@
 
 namespace vdbsynth {
 
-/// How a surface bends away from a frame's plane: second fundamental form of the plain model's surface through
-/// the voxel, along t and b, positive where it falls away as a ball does. [1 / voxels of the level]
+/// How a surface bends away from a frame's plane: second fundamental form of the plain model's surface
+/// through the voxel, along t and b, positive where it falls away as a ball does. [1 / voxels of the level]
 struct Bend {
     float tt = 0, tb = 0, bb = 0;
 };

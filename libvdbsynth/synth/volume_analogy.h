@@ -64,7 +64,7 @@ struct VolumeAnalogyResult {
 ///    things are lost first;
 ///  - every pair has at least kRoom voxels along two axes, of which neighbourhoods take eight.
 int usefulLevels(const std::vector<AnalogyPair>& pairs, const RunContext& ctx = {});
-inline constexpr double kHeld = 0.55;
+inline constexpr double kHeld = 0.7;
 inline constexpr int kRoom = 36;  ///< [voxels of the level]
 
 /// B' such that plain : textured = target : B' [bhat2004]: coarse to fine, voxels in the order of the sweep

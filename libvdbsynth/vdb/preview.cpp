@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace vdbsynth {
 namespace {
@@ -54,15 +55,73 @@ struct Hit {
     double depth = 0;
 };
 
+// Brightness along lines of a vector field.
+class Streaks {
+public:
+    explicit Streaks(const openvdb::Vec3SGrid& field) : mField(&field), mAccessor(field.getConstAccessor()) {}
+
+    /// 0..1, or negative where the field says nothing.
+    double at(const Vec3d& position) {
+        const openvdb::Vec3d start = mField->worldToIndex(toVec(position));
+        Vec3d first;
+        if (!along(start, first)) return -1;
+        double sum = 0;
+        int count = 0;
+        for (const double way : {1.0, -1.0}) {
+            openvdb::Vec3d p = start;
+            Vec3d heading = first * way;
+            for (int s = 0; s < kSteps; ++s) {
+                sum += noise(p);
+                ++count;
+                p += toVec(heading * kStep);
+                Vec3d next;
+                if (!along(p, next)) break;
+                heading = dot(next, heading) < 0 ? -next : next;
+            }
+        }
+        // The mean of many varies little; spread it over the whole range again.
+        return std::clamp(0.5 + (sum / count - 0.5) * 1.4 * std::sqrt(count * kStep), 0.0, 1.0);
+    }
+
+private:
+    static constexpr int kSteps = 12;
+    static constexpr double kStep = 0.5;  // [voxels]
+
+    bool along(const openvdb::Vec3d& p, Vec3d& direction) {
+        openvdb::Vec3f value;
+        if (!mAccessor.probeValue(openvdb::Coord::round(p), value)) return false;
+        const openvdb::Vec3d index =
+            mField->worldToIndex(mField->indexToWorld(openvdb::Vec3d(0)) + openvdb::Vec3d(value)) -
+            openvdb::Vec3d(0);
+        direction = fromVec(index);
+        const double size = length(direction);
+        if (!(size > 0)) return false;
+        direction = direction * (1 / size);
+        return true;
+    }
+
+    static double noise(const openvdb::Vec3d& p) {
+        const openvdb::Coord voxel = openvdb::Coord::round(p);
+        const auto part = [](int v) { return std::uint64_t(std::uint32_t(v)) & 0x1fffff; };
+        return Random(1, part(voxel.x()) << 42 | part(voxel.y()) << 21 | part(voxel.z())).uniform();
+    }
+
+    const openvdb::Vec3SGrid* mField;
+    openvdb::Vec3SGrid::ConstAccessor mAccessor;
+};
+
 class Scene {
 public:
-    Scene(const openvdb::FloatGrid& grid, const Camera& camera, double voxel)
+    Scene(const openvdb::FloatGrid& grid, const Camera& camera, double voxel,
+          const openvdb::Vec3SGrid* directions)
         : mIntersector(grid),
           mCamera(camera),
           mVoxel(voxel),
-          mLight(normalized(camera.right * -0.55 + camera.up * 0.75 - camera.forward * 0.6)) {}
+          mLight(normalized(camera.right * -0.55 + camera.up * 0.75 - camera.forward * 0.6)) {
+        if (directions) mStreaks.emplace(*directions);
+    }
 
-    Hit trace(double u, double v) const {
+    Hit trace(double u, double v) {
         Hit hit;
         const Vec3d direction = normalized(mCamera.forward + mCamera.right * u + mCamera.up * v);
         openvdb::Vec3d position, normal;
@@ -82,7 +141,7 @@ public:
     }
 
 private:
-    Vec3d shade(const Vec3d& position, const Vec3d& normal, const Vec3d& direction) const {
+    Vec3d shade(const Vec3d& position, const Vec3d& normal, const Vec3d& direction) {
         const double facing = dot(normal, mLight);
         double key = 0;
         if (facing > 0) {
@@ -92,7 +151,9 @@ private:
         }
         const double sky = 0.5 + 0.5 * dot(normal, mCamera.up);
         const double rim = std::max(0.0, 1 + dot(normal, direction));
-        const Vec3d albedo{0.80, 0.62, 0.46};
+        Vec3d albedo{0.80, 0.62, 0.46};
+        const double streak = mStreaks ? mStreaks->at(position) : -1;
+        if (streak >= 0) albedo = Vec3d{0.10, 0.16, 0.36} * (1 - streak) + Vec3d{0.92, 0.88, 0.80} * streak;
         const Vec3d light = Vec3d{1.0, 0.96, 0.90} * (0.95 * key) + Vec3d{0.30, 0.36, 0.45} * (0.75 * sky) +
                             Vec3d{0.16, 0.13, 0.11} + Vec3d{0.10, 0.11, 0.13} * (rim * rim);
         return {albedo.x * light.x, albedo.y * light.y, albedo.z * light.z};
@@ -102,7 +163,16 @@ private:
     Camera mCamera;
     double mVoxel;
     Vec3d mLight;
+    std::optional<Streaks> mStreaks;
 };
+
+const openvdb::Vec3SGrid* vectorsOf(const GridPtr& grid) {
+    if (!grid) return nullptr;
+    if (!grid->isType<openvdb::Vec3SGrid>())
+        throw Error(ErrorCode::BadData, "--directions: grid " + grid->getName() + " holds " +
+                                            grid->valueType() + "; vectors of floats are needed");
+    return static_cast<const openvdb::Vec3SGrid*>(grid.get());
+}
 
 // Gamma 2 for 2.2: a square root has the same bits on every processor.
 std::uint8_t encode(double light) {
@@ -137,6 +207,7 @@ Picture renderPreview(const openvdb::FloatGrid& grid, const PreviewOptions& opti
     requireOption(length(options.view) > 0, "view", "0,0,0", "a direction");
     requireOption(options.samples >= 1 && options.samples <= 64, "samples", std::to_string(options.samples),
                   "from 1 to 64");
+    const openvdb::Vec3SGrid* directions = vectorsOf(options.directions);
     const IndexBox box = solidBox(grid, "the model");
     const ThreadLimit limit(ctx);
     // The corners of the solid's box in world space; a rotated grid gives the box around them.
@@ -161,9 +232,9 @@ Picture renderPreview(const openvdb::FloatGrid& grid, const PreviewOptions& opti
     };
     Stage stage(ctx, "rendering", 2);
     behindWall(ErrorCode::Unusable, "the model cannot be rendered", [&] {
-        const Scene scene(grid, camera, voxelSizeOf(grid));
+        const Scene scene(grid, camera, voxelSizeOf(grid), directions);
         parallelFor(ctx, std::size_t(height), 4, [&](std::size_t begin, std::size_t end) {
-            const Scene mine = scene;
+            Scene mine = scene;
             for (int y = int(begin); y < int(end); ++y)
                 for (int x = 0; x < width; ++x) {
                     double u, v;
@@ -173,7 +244,7 @@ Picture renderPreview(const openvdb::FloatGrid& grid, const PreviewOptions& opti
         });
         stage.advance();
         parallelFor(ctx, std::size_t(height), 4, [&](std::size_t begin, std::size_t end) {
-            const Scene mine = scene;
+            Scene mine = scene;
             for (int y = int(begin); y < int(end); ++y)
                 for (int x = 0; x < width; ++x) {
                     const std::size_t pixel = std::size_t(y) * std::size_t(width) + std::size_t(x);

@@ -8,13 +8,15 @@ namespace vdbsynth {
 struct PreviewOptions {
     int width = 800, height = 600;  ///< [pixels], 16..8192
     Vec3d view{1.0, -1.6,
-               0.9};  ///< direction from the model to the camera, not zero; z is up unless it is along z
-    int samples = 4;  ///< rays a pixel at edges (elsewhere one), 1..64
+               0.9};     ///< direction from the model to the camera, not zero; z is up unless it is along z
+    GridPtr directions;  ///< vectors of floats beside the surface, drawn as streaks along them; null: none
+    int samples = 4;     ///< rays a pixel at edges (elsewhere one), 1..64
 };
 
 /// A shaded picture of a level set: perspective camera that sees the whole solid, one key light with
-/// shadow, sky and ground light, edges refined with `samples` rays a pixel.
-/// @throw Error InvalidOption, EmptyInput, Cancelled
+/// shadow, sky and ground light, edges refined with `samples` rays a pixel. Directions are drawn by line
+/// integral convolution [cabral1993]: noise, a number a voxel, averaged along twelve voxels of the field.
+/// @throw Error InvalidOption, BadData (directions that are no vectors of floats), EmptyInput, Cancelled
 /// @par Repeats same bits for any number of threads
 Picture renderPreview(const openvdb::FloatGrid& grid, const PreviewOptions& options = {},
                       const RunContext& ctx = {});

@@ -26,6 +26,10 @@ class Analogy(CliTest):
         self.assertGreater(self.model("m.vdb")["solid_voxels"], 1.2 * self.model("b.vdb")["solid_voxels"])
         names = {grid["name"] for grid in json.loads(self.ok("info", "m.vdb", "--json").stdout)["grids"]}
         self.assertLessEqual({"surface", "source", "exemplar", "source_rotation", "direction"}, names)
+        self.ok("render", "b.vdb", "-o", "d.png", "--directions", "m.vdb:direction", "--size", "160x120")
+        self.ok("render", "b.vdb", "-o", "e.png", "--size", "160x120")
+        self.assertNotEqual(self.read("d.png"), self.read("e.png"))
+        self.fails(3, "vectors of floats", "render", "b.vdb", "-o", "d.png", "--directions", "b.vdb")
         # The field that was written gives the same result when it is read.
         self.ok("analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "n.vdb", "--direction", "m.vdb:direction")
         self.assertAlmostEqual(self.model("n.vdb")["solid_voxels"] / self.model("m.vdb")["solid_voxels"], 1, places=2)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Puts the textures of `make`'s pairs on models and measures what came of it: the angle between grooves and the direction
-field, their spacing, the density of holes and whether they go through, the offset of a dilation. Prints a line for each.
+field, their spacing, the density of holes and whether they go through, the offset of a dilation, a blur of densities. Prints a line for each.
 Usage: analogies.py BUILD_FOLDER [--analogy "OPTIONS"] [ROW...]
 A row is run if its name contains one of the words. Needs numpy, scipy, skimage and pyopenvdb."""
 import argparse
@@ -33,6 +33,12 @@ ROWS = {
     "holes-bunny": ("holes", "meshes/bunny.off", 200, "axis:z"),
     "dilation-bunny": ("dilation", "meshes/bunny.off", 200, "axis:z"),
     "dilation-tori": ("dilation", "three-tori", 196, "around:z"),
+}
+# name: (target, its resolution, sigma of the blur [voxels])
+BLURS = {
+    "blur-tori-1": ("three-tori", 96, 1.0),
+    "blur-tori-2": ("three-tori", 96, 2.0),
+    "blur-bunny": ("meshes/bunny.off", 128, 1.5),
 }
 
 
@@ -126,6 +132,32 @@ class Measurements:
         self.tool("render", f"{name}.vdb", "-o", f"{name}.png")
         return seconds, json.loads((self.folder / f"{name}.json").read_text(encoding="utf-8"))
 
+    def blur(self, name, target, resolution, sigma):
+        """--naive on densities: how much of a Gaussian blur, learnt from a sponge, is missed on another model."""
+        self.tool("make", "sponge", "A.vdb", "--resolution", 64)
+        if "/" in target:
+            self.tool("convert", SAMPLES / target, "-o", "B.vdb", "--resolution", resolution)
+        else:
+            self.tool("make", target, "B.vdb", "--resolution", resolution)
+        wide = int(np.ceil(4 * sigma)) + 4
+        dense = {}
+        for model in ("A", "B"):
+            distance = np.pad(read(self.folder / f"{model}.vdb")[0].distance, wide, constant_values=3)
+            dense[model] = np.clip(0.5 - distance / 2, 0, 1)
+            dense[model + "2"] = ndimage.gaussian_filter(dense[model], sigma)
+        for model, density in dense.items():
+            grid = vdb.FloatGrid()
+            grid.name, grid.gridClass = "density", vdb.GridClass.FOG_VOLUME
+            grid.copyFromArray(density.astype(np.float32), tolerance=0)
+            vdb.write(str(self.folder / f"{model}.density.vdb"), grid)
+        began = time.monotonic()
+        self.tool("analogy", "A.density.vdb", "A2.density.vdb", "B.density.vdb", "-o", f"{name}.vdb", "--naive", *self.options)
+        seconds = time.monotonic() - began
+        made = np.zeros(dense["B"].shape, np.float32)
+        vdb.readAll(str(self.folder / f"{name}.vdb"))[0][0].copyToArray(made)
+        rms = lambda a: np.sqrt(np.mean(np.square(a, dtype=np.float64)))
+        print(f"{name:16} {seconds:5.1f} s  RMS(made - true) / RMS(true - before) {rms(made - dense['B2']) / rms(dense['B2'] - dense['B']):.3f}", flush=True)
+
     def pair(self, margin=6):
         """Heights and slopes of the pair, `margin` voxels from where it is cut off."""
         for name in ("A", "A2"):  # what is made has a narrower band than its texture is deep
@@ -216,14 +248,15 @@ def main():
     parser.add_argument("--analogy", default="", help="options to analogy, to choose defaults with")
     arguments = parser.parse_intermixed_args()
     measurements, failures = Measurements(arguments), 0
-    for name, row in ROWS.items():
+    for name, row in {**ROWS, **BLURS}.items():
         if arguments.rows and not any(word in name for word in arguments.rows):
             continue
-        if "/" in row[1] and not (SAMPLES / row[1]).exists():
+        target = row[0] if name in BLURS else row[1]
+        if "/" in target and not (SAMPLES / target).exists():
             print(f"{name:16} skipped: its sample is absent", flush=True)
             continue
         try:
-            measurements.run(name, *row)
+            (measurements.blur if name in BLURS else measurements.run)(name, *row)
         except RuntimeError as error:
             print(f"{name:16} failed: {error}", flush=True)
             failures += 1

@@ -65,3 +65,38 @@ TEST_CASE("renderPreview, renderSlice: options out of range are named", "[vdb][e
                          }).message,
                          "--slice"));
 }
+
+TEST_CASE("renderPreview: directions are streaks along them", "[vdb]") {
+    openvdb::initialize();
+    // Seen from above: a slab's top, directions along x.
+    const FloatGridPtr grid = meshToLevelSet(test::boxMesh({0, 0, 0}, {60, 60, 6}), 1, 3, "slab");
+    openvdb::Vec3SGrid::Ptr field = openvdb::Vec3SGrid::create(openvdb::Vec3f(0));
+    field->setTransform(grid->transform().copy());
+    for (auto value = grid->cbeginValueOn(); value; ++value)
+        field->tree().setValueOn(value.getCoord(), openvdb::Vec3f(2, 0, 0));
+    PreviewOptions options;
+    options.width = options.height = 200;
+    options.view = {0, 0, 1};
+    options.samples = 1;
+    options.directions = field;
+    const Picture picture = renderPreview(*grid, options);
+    const auto red = [&](int x, int y) { return int(picture.pixels[std::size_t(y * 200 + x) * 3]); };
+    double along = 0, across = 0;
+    for (int y = 60; y < 140; ++y)
+        for (int x = 60; x < 140; ++x) {
+            along += std::abs(red(x + 4, y) - red(x, y));
+            across += std::abs(red(x, y + 4) - red(x, y));
+        }
+    CHECK(across > 2.5 * along);
+    CHECK(across > 80 * 80 * 10);
+    PreviewOptions plain = options;
+    plain.directions = nullptr;
+    CHECK(renderPreview(*grid, plain).pixels != picture.pixels);
+    RunContext one;
+    one.threads = 1;
+    CHECK(renderPreview(*grid, options, one).pixels == picture.pixels);
+    options.directions = grid;
+    const test::Thrown thrown = test::thrownBy([&] { renderPreview(*grid, options); });
+    CHECK(thrown.code == int(ErrorCode::BadData));
+    CHECK(test::contains(thrown.message, "vectors of floats"));
+}

@@ -50,7 +50,11 @@ void render(Run& run) {
     slice.width = preview.width;
     slice.height = preview.height;
     if (run.arguments.has("slice")) parseSlice(run.arguments, slice);
+    if (run.arguments.has("directions") && run.arguments.has("slice"))
+        throw Error(ErrorCode::InvalidOption, "--directions: are drawn on a surface, not on a --slice");
     requireModelPath(run.arguments.inputs[0]);
+    if (run.arguments.has("directions"))
+        preview.directions = run.loadGrid("directions", run.arguments.text("directions"));
     const LevelSet model = run.load(run.arguments.inputs[0]);
     const std::string temporary = run.outputs().add(path);
     writePng(temporary, run.arguments.has("slice")
@@ -69,6 +73,8 @@ const Command kRender{
     {{"size", "WxH", "size of the picture (pixels), default 800x600"},
      {"view", "X,Y,Z", "direction from the model to the camera, default 1,-1.6,0.9"},
      {"samples", "N", "rays a pixel at edges, default 4"},
+     {"directions", "FILE.vdb:GRID",
+      "draw a field of directions, such as analogy --write-directions writes, as streaks on the surface"},
      {"slice", "z=0.5", "a slice across an axis, at a fraction of the domain, instead of a shaded picture"}},
     render};
 

@@ -129,7 +129,7 @@ TEST_CASE("makeAnalogy: refuses what it cannot work with, and stops when asked t
 TEST_CASE("usefulLevels: thin things hold fewer", "[synth]") {
     // A level has to be 36 voxels wide: two are no use to a field of 64.
     for (const auto& [side, levels] : {std::pair{144, 3}, std::pair{96, 2}, std::pair{64, 1}}) {
-        const auto flat = test::planeField(side, 20), step = test::planeField(side, 26);
+        const auto flat = test::planeField(side, 20), step = test::planeField(side, 32);
         const FrameField along = framesAlong(flat, {1, 0, 0});
         CHECK(usefulLevels({{flat, step, &along, flat->box()}}) == levels);
     }

@@ -199,8 +199,17 @@ AnalogyResult makeAnalogyModel(const std::vector<AnalogyModelPair>& pairs, const
     VolumeAnalogyResult made = makeAnalogy(given, *plain, frames, options.synthesis, ctx);
     BrickField field = blended(*plain, made.distance, weights(options, box, *target.grid, ctx), ctx);
     clean(field, fields, ctx);
-    result.model.grid =
-        closeAndRebuild(field, box.min, cut, options.halfWidth, *target.grid, "the result", ctx);
+    try {
+        result.model.grid =
+            closeAndRebuild(field, box.min, cut, options.halfWidth, *target.grid, "the result", ctx);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::EmptyInput) throw;
+        throw Error(ErrorCode::EmptyInput,
+                    "the texture takes all of the target away: it goes " +
+                        std::to_string(int(std::ceil(result.reach))) +
+                        " voxels deep, and the target is thinner; use smaller voxels for the target, or a "
+                        "smaller --scale or --strength");
+    }
     result.model.domain = target.domainRecorded ? target.domain : solidBox(*result.model.grid, "the result");
     result.model.domainRecorded = target.domainRecorded;
     stampLevelSet(result.model);

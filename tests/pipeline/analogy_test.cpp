@@ -5,6 +5,7 @@
 
 #include "libvdbsynth/measure/occupancy.h"
 #include "libvdbsynth/pipeline/make.h"
+#include "libvdbsynth/vdb/mesh_conversion.h"
 #include "tests/support/makers.h"
 
 using namespace vdbsynth;
@@ -149,4 +150,37 @@ TEST_CASE("makeAnalogyModel: every refusal says what to do", "[pipeline]") {
     RunContext stopped;
     stopped.cancel = &stop;
     CHECK(test::thrownBy([&] { applied(pair, target, {}, stopped); }).code == int(ErrorCode::Cancelled));
+}
+
+TEST_CASE("makeAnalogyModel: a target thinner than a neighbourhood is worked on, or said to be too thin",
+          "[pipeline]") {
+    AnalogyOptions options;
+    options.direction = direction("axis:x");
+    const auto plate = [](float thickness) {
+        LevelSet model;
+        model.grid = meshToLevelSet(test::boxMesh({0, 0, 0}, {40, 40, thickness}), 1, 3, "plate");
+        model.domain = solidBox(*model.grid, "plate");
+        return model;
+    };
+    // Two voxels thick, dilated by four.
+    const ModelPair dilation = pairOf("dilation");
+    const LevelSet thin = plate(2);
+    const AnalogyResult grown = makeAnalogyModel({{&dilation.plain, &dilation.textured}}, thin, options);
+    const openvdb::FloatGrid& made = *grown.model.grid;
+    CHECK(made.tree().getValue({20, 20, 1}) < 0);
+    double top = 0;
+    while (made.tree().getValue({20, 20, int(top)}) < 0) ++top;
+    CHECK(top - 2 == Approx(4).margin(1));
+    const ModelPair grooves = pairOf("grooves");
+    const LevelSet small = [&] {
+        LevelSet model;
+        model.grid = meshToLevelSet(test::boxMesh({0, 0, 0}, {3, 3, 3}), 1, 3, "crumb");
+        model.domain = solidBox(*model.grid, "crumb");
+        return model;
+    }();
+    const test::Thrown gone = test::thrownBy([&] {
+        makeAnalogyModel({{&grooves.plain, &grooves.textured}}, small, options);
+    });
+    CHECK(gone.code == int(ErrorCode::EmptyInput));
+    CHECK(test::contains(gone.message, "smaller voxels for the target"));
 }

@@ -33,6 +33,7 @@ void sumAndTurn(const std::vector<double>& in, int nx, int ny, int nz, int cell,
 BrickField slidingMean(const BrickField& field, int cell, const RunContext& ctx) {
     if (cell < 1) throw Error(ErrorCode::InvalidOption, "cell of an average must be at least 1");
     if (cell == 1) return field;
+    if (cell % 2 == 0) return twiceSlidingMean(slidingMean(field, cell / 2, ctx), cell / 2, ctx);
     const double scale = 1.0 / (double(cell) * cell * cell);
     return BrickField::generate(field.box(), ctx, [&](const IndexBox& brick, float* samples) {
         float constant = 0;
@@ -51,6 +52,24 @@ BrickField slidingMean(const BrickField& field, int cell, const RunContext& ctx)
         sumAndTurn(b, kSide, n, n, cell, a);
         sumAndTurn(a, kSide, kSide, n, cell, b);
         for (std::size_t i = 0; i < BrickField::kSamples; ++i) samples[i] = float(b[i] * scale);
+    });
+}
+
+BrickField twiceSlidingMean(const BrickField& mean, int cell, const RunContext& ctx) {
+    return BrickField::generate(mean.box(), ctx, [&](const IndexBox& brick, float* samples) {
+        float constant = 0;
+        if (mean.constantIn({brick.min, brick.max + Index3{cell, cell, cell}}, constant)) {
+            std::fill(samples, samples + BrickField::kSamples, constant);
+            return;
+        }
+        double sums[BrickField::kSamples] = {};
+        float values[BrickField::kSamples];
+        for (int corner = 0; corner < 8; ++corner) {
+            const Index3 offset{corner & 4 ? cell : 0, corner & 2 ? cell : 0, corner & 1 ? cell : 0};
+            mean.readBox(brick.min + offset, {kSide, kSide, kSide}, values);
+            for (int i = 0; i < BrickField::kSamples; ++i) sums[i] += double(values[i]);
+        }
+        for (int i = 0; i < BrickField::kSamples; ++i) samples[i] = float(sums[i] * 0.125);
     });
 }
 

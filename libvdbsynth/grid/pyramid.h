@@ -6,11 +6,17 @@ namespace vdbsynth {
 
 /// Mean over the cube [p, p + cell)^3 at every voxel p, the levels of all block pyramids at once
 /// [lagae2004, section 4.1: nodes refer into a globally averaged pyramid]. Near the box's far faces
-/// the cube reads the nearest voxel inside. Sums are double, in a fixed order; one rounding to float.
+/// the cube reads the nearest voxel inside. Sums are double, in a fixed order.
+/// An even cell's mean is that of eight cells of half its side, rounded to float each time.
 /// @param cell  side of the cube [voxels], at least 1
-/// @par Cost    O(bricks that are not constant near them * (8 + cell)^3)
+/// @par Cost    O(bricks that are not constant near them * (log(cell) + (8 + odd)^3)), odd being the cell's
+///              largest odd factor
 /// @par Repeats same bits for any number of threads
 BrickField slidingMean(const BrickField& field, int cell, const RunContext& ctx = {});
+
+/// From the sliding mean of a cell that of twice its side, where both are wanted.
+/// @param mean  what slidingMean gave for `cell`
+BrickField twiceSlidingMean(const BrickField& mean, int cell, const RunContext& ctx = {});
 
 /// The field at half the resolution: the mean of each 2x2x2 cube [lagae2004, section 5.2]. The result's
 /// box starts at 0 and has ceil(n/2) voxels a side; the half-filled last layer of an odd side averages the

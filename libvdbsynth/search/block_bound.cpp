@@ -7,30 +7,45 @@ namespace vdbsynth {
 namespace {
 
 constexpr int kLanes = kNodeCube;
-constexpr std::size_t kBetweenLooks = 64;  // means after which a row that exceeds the limit is left
+constexpr std::size_t kBetweenLooks = 16;  // means after which rows that exceed the limit are left
 
 constexpr int kRows = 4;  // of eight positions, side by side: sums that do not wait for each other
 
-// Adds the squares of what the means of positions differ by from the query's.
-// @param row  step from one row to the next
-__attribute__((target_clones("avx2", "default"))) void addSquares(const float* samples, std::ptrdiff_t row,
+// In the compiler's own vectors: written as loops over arrays, GCC keeps each lane in a register of its own.
+typedef float Row __attribute__((vector_size(4 * kLanes)));
+typedef float UnalignedRow __attribute__((vector_size(4 * kLanes), aligned(4), may_alias));
+
+// Sums the squares of what the means of positions differ by from the query's, until all exceed the limit.
+__attribute__((target_clones("avx2", "default"))) void sumSquares(const float* const rows[kRows],
                                                                   const std::ptrdiff_t* steps,
                                                                   const float* means, std::size_t count,
-                                                                  float* sums) {
-    float lanes[kRows][kLanes];
-    for (int r = 0; r < kRows; ++r)
-        for (int k = 0; k < kLanes; ++k) lanes[r][k] = sums[r * kLanes + k];
-    for (std::size_t i = 0; i < count; ++i) {
-        const float* from = samples + steps[i];
-        const float mean = means[i];
-        for (int r = 0; r < kRows; ++r)
-            for (int k = 0; k < kLanes; ++k) {
-                const float d = from[r * row + k] - mean;
-                lanes[r][k] += d * d;
-            }
+                                                                  float limit, float* const sums[kRows]) {
+    const float *const from0 = rows[0], *const from1 = rows[1], *const from2 = rows[2],
+                       *const from3 = rows[3];
+    Row sum0{}, sum1{}, sum2{}, sum3{};
+    const auto add = [](Row & sum, const float* from, float mean) __attribute__((always_inline)) {
+        const Row d = *reinterpret_cast<const UnalignedRow*>(from) - mean;
+        sum += d * d;
+    };
+    for (std::size_t begin = 0; begin < count; begin += kBetweenLooks) {
+        const std::size_t end = std::min(begin + kBetweenLooks, count);
+        for (std::size_t i = begin; i < end; ++i) {
+            add(sum0, from0 + steps[i], means[i]);
+            add(sum1, from1 + steps[i], means[i]);
+            add(sum2, from2 + steps[i], means[i]);
+            add(sum3, from3 + steps[i], means[i]);
+        }
+        if (end == count) break;
+        const Row least01 = sum0 < sum1 ? sum0 : sum1, least23 = sum2 < sum3 ? sum2 : sum3;
+        const Row least = least01 < least23 ? least01 : least23;
+        bool exceeds = true;
+        for (int k = 0; k < kLanes; ++k) exceeds = exceeds && least[k] > limit;
+        if (exceeds) break;
     }
-    for (int r = 0; r < kRows; ++r)
-        for (int k = 0; k < kLanes; ++k) sums[r * kLanes + k] = lanes[r][k];
+    *reinterpret_cast<UnalignedRow*>(sums[0]) = sum0;
+    *reinterpret_cast<UnalignedRow*>(sums[1]) = sum1;
+    *reinterpret_cast<UnalignedRow*>(sums[2]) = sum2;
+    *reinterpret_cast<UnalignedRow*>(sums[3]) = sum3;
 }
 
 }  // namespace
@@ -78,11 +93,6 @@ float LevelBound::squaresFor(double limit) const {
     return float(root * root * (1 + 1e-6));
 }
 
-float LevelBound::from(float squares) const {
-    const float left = std::max(std::sqrt(squares) - mMargin, 0.f);
-    return left * left * mScale;
-}
-
 float LevelBound::ofNode(const LevelField& field, const Index3& position, float limit) const {
     float sum = 0;
     for (std::size_t i = 0; i < mLevel.mean.size(); ++i) {
@@ -94,7 +104,7 @@ float LevelBound::ofNode(const LevelField& field, const Index3& position, float 
 }
 
 const std::vector<float>& CubeBounds::bound(const LevelBound& level, const LevelField& field,
-                                            const Index3& corner, float limit) {
+                                            const Index3& corner, float limit, std::uint64_t rows) {
     const bool dense = !field.dense.samples.empty();
     const int side = kNodeCube + level.mReach;
     if (!dense) {
@@ -106,17 +116,23 @@ const std::vector<float>& CubeBounds::bound(const LevelBound& level, const Level
                          plane = row * (dense ? field.dense.size.y : side);
     mSteps.clear();
     for (const Index3& o : level.mLevel.offset) mSteps.push_back(o.x * plane + o.y * row + o.z);
-    mSums.assign(std::size_t(kNodeCube * kNodeCube * kNodeCube), 0.f);
-    const std::size_t count = mSteps.size();
-    for (int x = 0; x < kNodeCube; ++x)
-        for (int y = 0; y < kNodeCube; y += kRows) {
-            float* sums = mSums.data() + (x * kNodeCube + y) * kNodeCube;
-            for (std::size_t i = 0; i < count; i += kBetweenLooks) {
-                if (*std::min_element(sums, sums + kRows * kLanes) > limit) break;
-                addSquares(samples + x * plane + y * row, row, mSteps.data() + i,
-                           level.mLevel.mean.data() + i, std::min(kBetweenLooks, count - i), sums);
+    mSums.resize(std::size_t(kNodeCube * kNodeCube * kNodeCube));
+    const float* from[kRows];
+    float* to[kRows];
+    while (rows != 0) {
+        for (int r = 0; r < kRows; ++r) {  // the last one over again where there are no four left
+            if (rows != 0) {
+                const int row8 = __builtin_ctzll(rows);
+                from[r] = samples + row8 / kNodeCube * plane + row8 % kNodeCube * row;
+                to[r] = mSums.data() + row8 * kNodeCube;
+                rows &= rows - 1;
+            } else {
+                from[r] = from[r - 1];
+                to[r] = to[r - 1];
             }
         }
+        sumSquares(from, mSteps.data(), level.mLevel.mean.data(), mSteps.size(), limit, to);
+    }
     return mSums;
 }
 

@@ -1,6 +1,9 @@
 #pragma once
 #include "libvdbsynth/search/block_index_data.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace vdbsynth {
@@ -26,7 +29,11 @@ public:
     /// A sum of squares that is no more than this may be within a limit.
     float squaresFor(double limit) const;
     /// From the sum of squares: by the triangle inequality the margin comes off its root.
-    float from(float squares) const;
+    float from(float squares) const {
+        const float left = std::max(std::sqrt(squares) - mMargin, 0.f);
+        return left * left * mScale;
+    }
+    std::size_t meanCount() const { return mLevel.mean.size(); }
     /// Sum of squares of the block at a position; once it exceeds the limit, something that does.
     float ofNode(const LevelField& field, const Index3& position, float limit) const;
 
@@ -43,9 +50,10 @@ class CubeBounds {
 public:
     /// @param corner  cubeCorner of the cube
     /// @param limit   sums of rows that all exceed it may be left at any that do
-    /// @return one sum of squares for each placeInCube, valid until the next call
+    /// @param rows    bit x * kNodeCube + y for each row along z that is wanted
+    /// @return one sum of squares for each placeInCube of those rows, valid until the next call
     const std::vector<float>& bound(const LevelBound& level, const LevelField& field, const Index3& corner,
-                                    float limit);
+                                    float limit, std::uint64_t rows = ~std::uint64_t(0));
 
 private:
     std::vector<float> mSamples, mSums;

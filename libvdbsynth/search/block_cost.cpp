@@ -1,5 +1,6 @@
 #include "libvdbsynth/search/block_cost.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace vdbsynth {
@@ -24,23 +25,42 @@ double slabSum(const float* a, const float* b, const std::uint8_t* known, int sa
     return sum;
 }
 
-}  // namespace
-
-double blockCost(const BrickField& exemplar, const Index3& corner, int block, const float* query,
-                 const std::uint8_t* known, std::int64_t count, double giveUp) {
+// @param readSlab  (x, out): the samples of the block's slab x
+template <typename ReadSlab>
+double costBySlabs(const ReadSlab& readSlab, int block, const float* query, const std::uint8_t* known,
+                   std::int64_t count, double giveUp) {
     const int slab = block * block;
     thread_local std::vector<float> values;
     values.resize(std::size_t(slab));
     double lanes[kLanes] = {};
     double cost = 0;
     for (int x = 0; x < block; ++x) {
-        exemplar.readBox({corner.x + x, corner.y, corner.z}, {1, block, block}, values.data());
+        readSlab(x, values.data());
         cost = slabSum(values.data(), query + std::ptrdiff_t(x) * slab,
                        known ? known + std::ptrdiff_t(x) * slab : nullptr, slab, lanes) /
                double(count);
         if (cost > giveUp) return cost;
     }
     return cost;
+}
+
+}  // namespace
+
+double blockCost(const BrickField& exemplar, const Index3& corner, int block, const float* query,
+                 const std::uint8_t* known, std::int64_t count, double giveUp) {
+    const auto readSlab = [&](int x, float* out) {
+        exemplar.readBox({corner.x + x, corner.y, corner.z}, {1, block, block}, out);
+    };
+    return costBySlabs(readSlab, block, query, known, count, giveUp);
+}
+
+double blockCost(const DenseField& exemplar, const Index3& corner, int block, const float* query,
+                 const std::uint8_t* known, std::int64_t count, double giveUp) {
+    const auto readSlab = [&](int x, float* out) {
+        for (int y = 0; y < block; ++y)
+            std::copy_n(exemplar.row(corner.x + x, corner.y + y, corner.z), block, out + y * block);
+    };
+    return costBySlabs(readSlab, block, query, known, count, giveUp);
 }
 
 std::int64_t countKnown(const std::uint8_t* known, int block) {

@@ -1,5 +1,5 @@
 #pragma once
-#include "libvdbsynth/grid/brick_field.h"
+#include "libvdbsynth/grid/dense_field.h"
 
 #include <cstdint>
 
@@ -16,6 +16,10 @@ namespace vdbsynth {
 /// @param count     n, at least 1
 /// @param giveUp    once the cost is sure to exceed this, some larger value may be returned instead
 double blockCost(const BrickField& exemplar, const Index3& corner, int block, const float* query,
+                 const std::uint8_t* known, std::int64_t count, double giveUp);
+
+/// The same cost with the same bits from an exemplar in one array.
+double blockCost(const DenseField& exemplar, const Index3& corner, int block, const float* query,
                  const std::uint8_t* known, std::int64_t count, double giveUp);
 
 /// Number of known samples.

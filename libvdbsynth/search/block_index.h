@@ -23,19 +23,36 @@ struct BlockMatch {
     double cost = 0;  ///< blockCost
 };
 
+/// How matches are looked for; both ways give the same answers.
+enum class BlockSearchWay {
+    Planned,     ///< by bounds; by correlation once they turn out to leave too much
+    Bounds,      ///< by bounds alone
+    Correlation  ///< all costs at once by the FFT, whatever the query
+};
+
 struct BlockSearchOptions {
     int count = 1;  ///< how many matches, at least 1
     /// 0: exact. Above: what a search may settle for. Everything whose lower bound exceeds the cost found so
     /// far divided by (1 + tolerance)^2 is left out, so that the k-th answer's root-mean-square difference is
     /// at most (1 + tolerance) times that of the k-th best block. 0..100
     double tolerance = 0;
+    BlockSearchWay way = BlockSearchWay::Planned;
 };
 
 /// What a search did, summed over calls by the caller.
 struct BlockSearchCounts {
-    std::uint64_t groups = 0;  ///< groups of positions opened
-    std::uint64_t nodes = 0;   ///< bounds computed for single nodes
-    std::uint64_t exact = 0;   ///< full costs computed
+    std::uint64_t groups = 0;      ///< groups of positions opened
+    std::uint64_t nodes = 0;       ///< bounds computed for single nodes
+    std::uint64_t exact = 0;       ///< full costs computed
+    std::uint64_t transforms = 0;  ///< queries answered by correlation
+
+    BlockSearchCounts& operator+=(const BlockSearchCounts& more) {
+        groups += more.groups;
+        nodes += more.nodes;
+        exact += more.exact;
+        transforms += more.transforms;
+        return *this;
+    }
 };
 
 struct BlockIndexOptions {
@@ -60,7 +77,9 @@ struct BlockIndexOptions {
 ///  - blocks with identical samples are one node (all constant regions of one value are one node);
 ///  - the parent of partly identical nodes is a group of neighbouring positions with the range of each mean,
 ///    which bounds all of them at once;
-///  - the leaf's cost is blockCost over float samples, bounds carry a margin for rounding.
+///  - the leaf's cost is blockCost over float samples, bounds carry a margin for rounding;
+///  - where bounds leave more work than comparing everything at once by the FFT (blocks much larger than what
+///    the exemplar is made of), that is done: BlockCorrelation. When is decided by counting, not by a clock.
 class BlockIndex {
 public:
     /// @param exemplar  box begins at 0; kept alive and shared
@@ -68,6 +87,9 @@ public:
     ///              block inside the mask), Memory (by ctx.maxMemory), Io (cacheFolder), Cancelled
     /// @par Cost    time O(positions whose blocks are not constant * N), memory 14 bytes each of those and 4
     ///              for each of their means and once more; constant blocks cost 16 bytes a run along z
+    ///              The first query that needs the FFT makes its transforms, 16 to 28 bytes a voxel more,
+    ///              and each thread that uses it as much as half of that; not where ctx.maxMemory is too
+    ///              little for it
     /// @par Repeats same bits for any number of threads
     static BlockIndex build(std::shared_ptr<const BrickField> exemplar, const BlockIndexOptions& options,
                             const RunContext& ctx = {});
@@ -103,6 +125,7 @@ public:
     const BrickField& exemplar() const;
     /// Box of all block positions.
     const IndexBox& positions() const;
+    /// Of the index, with the transforms once they are made.
     std::size_t memoryBytes() const;
     /// Number of distinct blocks, after identical ones became one node.
     std::size_t nodeCount() const;

@@ -195,6 +195,14 @@ bool BlockIndexData::eligible(const Index3& p) const {
     return !maskMeans || maskMeans->inside(p) == 1.f;
 }
 
+double BlockIndexData::cost(const Index3& position, const BlockQuery& query, std::int64_t known,
+                            double giveUp) const {
+    const DenseField& dense = means.back().dense;
+    return dense.samples.empty()
+               ? blockCost(*exemplar, position, block, query.samples, query.known, known, giveUp)
+               : blockCost(dense, position, block, query.samples, query.known, known, giveUp);
+}
+
 std::size_t BlockIndexData::memoryBytes() const {
     std::size_t bytes = exemplar->memoryBytes() + groups.size() * sizeof(BlockGroup) +
                         nodes.size() * (sizeof(std::uint64_t) + sizeof(std::uint16_t)) +
@@ -247,6 +255,18 @@ bool readKept(const std::string& path, BlockIndexData& data, const RunContext& c
     }
 }
 
+// Fine to coarse: a level is made from the finer one where its cells are twice as large.
+void makeMeans(BlockIndexData& data, const RunContext& ctx) {
+    data.means.resize(data.cells.size() + 1);
+    data.means.back().bricks = data.exemplar;
+    for (std::size_t l = data.cells.size(); l-- > 0;) {
+        const bool twice = l + 1 < data.cells.size() && data.cells[l] == 2 * data.cells[l + 1];
+        data.means[l].bricks = std::make_shared<const BrickField>(
+            twice ? twiceSlidingMean(*data.means[l + 1].bricks, data.cells[l + 1], ctx)
+                  : slidingMean(*data.exemplar, data.cells[l], ctx));
+    }
+}
+
 void makeNodes(BlockIndexData& data, const RunContext& ctx) {
     std::vector<Hashed> all = hashBlocks(data, ctx);
     if (all.empty())
@@ -287,10 +307,7 @@ BlockIndexData buildBlockIndexData(std::shared_ptr<const BrickField> exemplar,
                   double(varied) * kPositionGroup * kPositionGroup * kPositionGroup *
                       (64 + 4 * double(data.cells.size())),
                   "the search index", "use a smaller --exemplar-box or larger voxels");
-    for (int cell : data.cells)
-        data.means.push_back(
-            {std::make_shared<const BrickField>(slidingMean(*data.exemplar, cell, ctx)), {}});
-    data.means.push_back({data.exemplar, {}});
+    makeMeans(data, ctx);
     const bool dense =
         double(varied) * kPositionGroup * kPositionGroup * kPositionGroup > 0.7 * double(box.volume());
     for (LevelField& field : data.means)

@@ -73,6 +73,8 @@ struct BlockIndexData {
                std::uint64_t(p.z);
     }
     Index3 position(std::uint32_t node) const { return positionOf(nodes[node]); }
+    /// blockCost, from what is quickest to read.
+    double cost(const Index3& position, const BlockQuery& query, std::int64_t known, double giveUp) const;
     bool isShared(std::uint32_t node) const { return memberBegin[node] != memberBegin[node + 1]; }
     bool eligible(const Index3& p) const;
     std::size_t nodeCount() const { return nodes.size(); }

@@ -12,7 +12,7 @@
 namespace vdbsynth {
 namespace {
 
-constexpr std::uint64_t kFormat = 0x3158444942445655ull;  // changes with whatever the arrays mean
+constexpr std::uint64_t kFormat = 0x3258444942445655ull;  // changes with whatever the arrays mean
 
 struct Header {
     std::uint64_t format = kFormat, nodes = 0, members = 0, groups = 0, check = 0;

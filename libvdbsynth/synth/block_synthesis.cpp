@@ -93,8 +93,15 @@ private:
 
     struct Found {
         BlockMatch match;
-        std::int32_t exemplar = 0;
-        BlockSearchCounts counts;
+        std::int32_t exemplar = -1;
+    };
+
+    // What a block is matched by.
+    struct Asked {
+        Index3 origin;
+        std::vector<float> samples;
+        std::vector<std::uint8_t> known;  // empty: everywhere
+        int only = -1;                    // exemplar; -1: any
     };
 
     void walk(const Pass& pass, const std::vector<BlockIndex>& indices, bool seeded,
@@ -109,16 +116,10 @@ private:
                     const int c = wave - a - b;
                     if (c >= 0 && c < lattice.z) blocks.push_back({a, b, c});
                 }
-            std::vector<Found> found(blocks.size());
-            parallelFor(mContext, blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t i = begin; i < end; ++i)
-                    found[i] = matchOne(pass, indices, seeded, coarseMap, field, map, blocks[i]);
-            });
+            const std::vector<Found> found = matchWave(pass, indices, seeded, coarseMap, field, map, blocks);
             for (std::size_t i = 0; i < blocks.size(); ++i) {
                 copyOpen(pass, map, blocks[i], found[i], field);
                 costs += found[i].match.cost;
-                mStats.nodes += found[i].counts.nodes;
-                mStats.exact += found[i].counts.exact;
             }
             mStats.matches += blocks.size();
             stage.advance(blocks.size());
@@ -146,52 +147,76 @@ private:
         return samples;
     }
 
-    Found matchOne(const Pass& pass, const std::vector<BlockIndex>& indices, bool seeded,
-                   const PatchMap* coarseMap, const BrickField& field, const PatchMap& map,
-                   const Index3& l) const {
-        const int n = pass.block;
-        const Index3 origin{map.origin(0, l.x), map.origin(1, l.y), map.origin(2, l.z)};
-        std::vector<float> samples(std::size_t(n) * std::size_t(n) * std::size_t(n));
-        field.readBox(origin, {n, n, n}, samples.data());
-        std::vector<std::uint8_t> known;
-        if (!seeded) {
-            known = openSamples(map, l);
-            for (std::uint8_t& k : known) k = !k;
-        }
-        Found best;
-        bool any = false;
-        const int only = exemplarAt(mOptions, pass, origin + Index3{n / 2, n / 2, n / 2});
+    // The blocks of a wave do not touch: all of them ask at once, exemplar by exemplar.
+    std::vector<Found> matchWave(const Pass& pass, const std::vector<BlockIndex>& indices, bool seeded,
+                                 const PatchMap* coarseMap, const BrickField& field, const PatchMap& map,
+                                 const std::vector<Index3>& blocks) {
+        std::vector<Found> found(blocks.size());
+        std::vector<Asked> asked(blocks.size());
+        parallelFor(mContext, blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) asked[i] = ask(pass, seeded, field, map, blocks[i]);
+        });
         for (std::size_t e = 0; e < indices.size(); ++e) {
-            if (only >= 0 && int(e) != only) continue;
-            BlockQuery query;
-            query.samples = samples.data();
-            query.known = seeded ? nullptr : known.data();
-            query.candidates = sourceBox(mOptions, pass, indices[e].exemplar().box().size(), n, origin);
-            if (query.candidates.empty()) continue;
-            if (!seeded && l == Index3{0, 0, 0}) {
-                if ((only >= 0 || e == 0) && drawFirst(indices[e], query, best)) {
-                    best.exemplar = std::int32_t(e);
-                    return best;
+            std::vector<BlockQuery> queries;
+            std::vector<std::size_t> of;
+            for (std::size_t i = 0; i < blocks.size(); ++i) {
+                BlockQuery query = queryOf(asked[i], pass, indices[e]);
+                if (query.candidates.empty() || (asked[i].only >= 0 && int(e) != asked[i].only)) continue;
+                if (!seeded && blocks[i] == Index3{0, 0, 0}) {
+                    if ((asked[i].only >= 0 || e == 0) && drawFirst(indices[e], query, found[i].match))
+                        found[i].exemplar = std::int32_t(e);
+                    continue;
                 }
-                continue;
+                addHints(map, coarseMap, blocks[i], std::int32_t(e), query.hints);
+                queries.push_back(std::move(query));
+                of.push_back(i);
             }
-            addHints(map, coarseMap, l, std::int32_t(e), query.hints);
-            const std::vector<BlockMatch> matches = indices[e].match(query, 1, &best.counts);
-            if (matches.empty() || (any && best.match.cost <= matches.front().cost)) continue;
-            best.match = matches.front();
-            best.exemplar = std::int32_t(e);
-            any = true;
+            BlockSearchCounts counts;
+            const auto matches = indices[e].matchAll(queries, {}, mContext, &counts);
+            mStats.nodes += counts.nodes;
+            mStats.exact += counts.exact;
+            for (std::size_t q = 0; q < queries.size(); ++q) {
+                Found& best = found[of[q]];
+                if (matches[q].empty() || (best.exemplar >= 0 && best.match.cost <= matches[q].front().cost))
+                    continue;
+                best = {matches[q].front(), std::int32_t(e)};
+            }
         }
-        if (!any)
-            throw Error(ErrorCode::Unusable, "no eligible source for the block at " +
-                                                 std::to_string(origin.x) + "," + std::to_string(origin.y) +
-                                                 "," + std::to_string(origin.z) +
+        for (std::size_t i = 0; i < blocks.size(); ++i) {
+            if (found[i].exemplar >= 0) continue;
+            const Index3& at = asked[i].origin;
+            throw Error(ErrorCode::Unusable, "no eligible source for the block at " + std::to_string(at.x) +
+                                                 "," + std::to_string(at.y) + "," + std::to_string(at.z) +
                                                  "; widen --exemplar-mask or raise --drift");
-        return best;
+        }
+        return found;
+    }
+
+    Asked ask(const Pass& pass, bool seeded, const BrickField& field, const PatchMap& map,
+              const Index3& l) const {
+        const int n = pass.block;
+        Asked asked;
+        asked.origin = {map.origin(0, l.x), map.origin(1, l.y), map.origin(2, l.z)};
+        asked.samples.resize(std::size_t(n) * std::size_t(n) * std::size_t(n));
+        field.readBox(asked.origin, {n, n, n}, asked.samples.data());
+        if (!seeded) {
+            asked.known = openSamples(map, l);
+            for (std::uint8_t& k : asked.known) k = !k;
+        }
+        asked.only = exemplarAt(mOptions, pass, asked.origin + Index3{n / 2, n / 2, n / 2});
+        return asked;
+    }
+
+    BlockQuery queryOf(const Asked& asked, const Pass& pass, const BlockIndex& index) const {
+        BlockQuery query;
+        query.samples = asked.samples.data();
+        query.known = asked.known.empty() ? nullptr : asked.known.data();
+        query.candidates = sourceBox(mOptions, pass, index.exemplar().box().size(), pass.block, asked.origin);
+        return query;
     }
 
     // The first block of all: any eligible one, by the seed.
-    bool drawFirst(const BlockIndex& index, const BlockQuery& query, Found& found) const {
+    bool drawFirst(const BlockIndex& index, const BlockQuery& query, BlockMatch& found) {
         for (std::uint64_t attempt = 0; attempt < 256; ++attempt) {
             Random random(mContext.seed, attempt, kFirstBlockPurpose);
             BlockQuery drawn = query;
@@ -200,13 +225,13 @@ private:
                 drawn.candidates.min[axis] = drawn.candidates.max[axis] =
                     query.candidates.min[axis] + int(random.below(room));
             }
-            const std::vector<BlockMatch> matches = index.match(drawn, 1, &found.counts);
+            const std::vector<BlockMatch> matches = index.match(drawn);
             if (matches.empty()) continue;  // outside the mask
-            found.match = matches.front();
+            found = matches.front();
             return true;
         }
-        const std::vector<BlockMatch> matches = index.match(query, 1, &found.counts);
-        if (!matches.empty()) found.match = matches.front();
+        const std::vector<BlockMatch> matches = index.match(query);
+        if (!matches.empty()) found = matches.front();
         return !matches.empty();
     }
 

@@ -7,7 +7,7 @@
 using namespace vdbsynth;
 
 TEST_CASE("slidingMean: every voxel holds the mean of the cube that begins there", "[grid][oracle]") {
-    for (int cell : {1, 2, 3, 8, 11}) {
+    for (int cell : {1, 2, 3, 8, 11, 12}) {
         const BrickField field = test::noiseField({21, 17, 19}, 4);
         const BrickField mean = slidingMean(field, cell);
         for (const Index3& p : {Index3{0, 0, 0}, Index3{3, 5, 7}, Index3{21 - cell, 17 - cell, 19 - cell},
@@ -22,6 +22,21 @@ TEST_CASE("slidingMean: every voxel holds the mean of the cube that begins there
     CHECK(test::thrownBy([] {
               slidingMean(test::noiseField({8, 8, 8}, 1), 0);
           }).code == int(ErrorCode::InvalidOption));
+}
+
+TEST_CASE("twiceSlidingMean: the mean of the cube of twice the side", "[grid][oracle]") {
+    const BrickField field = test::noiseField({30, 17, 19}, 4);
+    for (int cell : {1, 3, 5}) {
+        const BrickField twice = twiceSlidingMean(slidingMean(field, cell), cell);
+        const BrickField direct = slidingMean(field, 2 * cell);
+        for (const Index3& p : {Index3{0, 0, 0}, Index3{7, 5, 7}, Index3{29, 16, 18}, Index3{20, 1, 12}})
+            CHECK(twice.at(p) == direct.at(p));
+        double sum = 0;
+        for (int x = 0; x < 2 * cell; ++x)
+            for (int y = 0; y < 2 * cell; ++y)
+                for (int z = 0; z < 2 * cell; ++z) sum += double(field.at(Index3{2, 3, 4} + Index3{x, y, z}));
+        CHECK(twice.at({2, 3, 4}) == Approx(sum / (8 * cell * cell * cell)).margin(1e-6));
+    }
 }
 
 TEST_CASE("slidingMean: constant regions stay exactly constant and unstored", "[grid][property]") {

@@ -82,5 +82,13 @@ TEST_CASE("CubeBounds: what exceeds the limit may stop early but still exceeds i
     const LevelBound bound(level, 0);
     CubeBounds cube;
     for (float sum : cube.bound(bound, inBricks(exemplar), {8, 8, 8}, 100.f)) REQUIRE(sum > 100.f);
+    const float none = std::numeric_limits<float>::infinity();
+    const std::vector<float> all = cube.bound(bound, inBricks(exemplar), {8, 8, 8}, none);
+    for (std::uint64_t rows : {std::uint64_t(1), std::uint64_t(0x8000000000000001), std::uint64_t(0xF0F00),
+                               std::uint64_t(0x123456789ABCDEF)}) {
+        const std::vector<float>& some = cube.bound(bound, inBricks(exemplar), {8, 8, 8}, none, rows);
+        for (std::size_t i = 0; i < 512; ++i)
+            if (rows >> (i / 8) & 1) REQUIRE(some[i] == all[i]);
+    }
     CHECK(bound.ofNode(inBricks(exemplar), {8, 8, 8}, 100.f) > 100.f);
 }

@@ -35,4 +35,8 @@ TEST_CASE("blockCost: an early return is never below the limit, a full one is ex
     CHECK(exact == Approx(sum / 729).epsilon(1e-6));
     CHECK(blockCost(field, {3, 4, 5}, 9, query.data(), nullptr, 729, exact) == exact);
     CHECK(blockCost(field, {3, 4, 5}, 9, query.data(), nullptr, 729, exact / 3) > exact / 3);
+    const DenseField dense = denseField(field);
+    for (double giveUp : {1e9, exact, exact / 3})
+        CHECK(blockCost(dense, {3, 4, 5}, 9, query.data(), nullptr, 729, giveUp) ==
+              blockCost(field, {3, 4, 5}, 9, query.data(), nullptr, 729, giveUp));
 }

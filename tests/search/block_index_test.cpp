@@ -1,4 +1,4 @@
-#include "libvdbsynth/search/block_index.h"
+#include "libvdbsynth/search/block_correlation.h"
 
 #include <catch2/catch.hpp>
 
@@ -62,6 +62,20 @@ void requireSame(const std::vector<BlockMatch>& a, const std::vector<BlockMatch>
     }
 }
 
+std::shared_ptr<const BrickField> ballIn(int side) {
+    return std::make_shared<const BrickField>(test::fieldFrom({side, side, side}, [](const Index3& p) {
+        const float x = float(p.x) - 20, y = float(p.y) - 20, z = float(p.z) - 20;
+        return std::clamp(std::sqrt(x * x + y * y + z * z) - 8, -4.f, 4.f);
+    }));
+}
+
+BlockSearchOptions by(BlockSearchWay way, int count) {
+    BlockSearchOptions options;
+    options.way = way;
+    options.count = count;
+    return options;
+}
+
 }  // namespace
 
 TEST_CASE("BlockIndex: the best K equal those of a linear scan, ties by position", "[search][property]") {
@@ -78,7 +92,10 @@ TEST_CASE("BlockIndex: the best K equal those of a linear scan, ties by position
                 BlockQuery query;
                 query.samples = samples.data();
                 const int count = seed % 3 == 0 ? 1 : int(seed);
-                requireSame(index.match(query, count), matchBlocksLinearly(c.field, block, query, count));
+                const auto exact = matchBlocksLinearly(c.field, block, query, count);
+                for (BlockSearchWay way :
+                     {BlockSearchWay::Planned, BlockSearchWay::Bounds, BlockSearchWay::Correlation})
+                    requireSame(index.match(query, by(way, count)), exact);
             }
         }
     }
@@ -115,7 +132,10 @@ TEST_CASE("BlockIndex: exact under any mask, inside any box of candidates, with 
                 for (int h = 0; h < 3; ++h)
                     query.hints.push_back(
                         {int(random.below(40)) - 5, int(random.below(30)) - 5, int(random.below(30)) - 5});
-                requireSame(index.match(query, 3), matchBlocksLinearly(c.field, block, query, 3));
+                const auto exact = matchBlocksLinearly(c.field, block, query, 3);
+                for (BlockSearchWay way :
+                     {BlockSearchWay::Planned, BlockSearchWay::Bounds, BlockSearchWay::Correlation})
+                    requireSame(index.match(query, by(way, 3)), exact);
             }
         }
     }
@@ -135,6 +155,7 @@ TEST_CASE("BlockIndex: with an exemplar mask only blocks wholly inside it are fo
         query.samples = samples.data();
         const std::vector<BlockMatch> found = index.match(query, 4);
         requireSame(found, matchBlocksLinearly(field, 8, query, 4, &mask));
+        requireSame(found, index.match(query, by(BlockSearchWay::Correlation, 4)));
         for (const BlockMatch& match : found) CHECK((match.position.x <= 9 && match.position.y >= 6));
     }
     const BrickField nothing(field.box(), 0.f);
@@ -223,12 +244,6 @@ TEST_CASE("BlockIndex: bad options and cancel", "[search][error][cancel]") {
 }
 
 TEST_CASE("BlockIndex: a mostly empty field costs what its surface costs", "[search][property]") {
-    const auto ballIn = [](int side) {
-        return std::make_shared<const BrickField>(test::fieldFrom({side, side, side}, [](const Index3& p) {
-            const float x = float(p.x) - 20, y = float(p.y) - 20, z = float(p.z) - 20;
-            return std::clamp(std::sqrt(x * x + y * y + z * z) - 8, -4.f, 4.f);
-        }));
-    };
     BlockIndexOptions options;
     options.block = 8;
     const BlockIndex small = BlockIndex::build(ballIn(48), options);
@@ -241,6 +256,50 @@ TEST_CASE("BlockIndex: a mostly empty field costs what its surface costs", "[sea
     const test::Thrown thrown = test::thrownBy([&] { BlockIndex::build(ballIn(48), options, ctx); });
     CHECK(thrown.code == int(ErrorCode::Memory));
     CHECK(test::contains(thrown.message, "--exemplar-box"));
+}
+
+TEST_CASE("BlockIndex: where bounds leave too much correlation goes on, where memory allows it",
+          "[search][property]") {
+    const BrickField source = test::noiseField({44, 40, 42}, 3);
+    const auto field = std::make_shared<const BrickField>(source);
+    BlockIndexOptions options;
+    options.block = 8;
+    const BlockIndex index = BlockIndex::build(field, options);
+    const std::size_t bytes = index.memoryBytes();
+    const std::vector<float> samples = test::samplesOf(test::noiseField({8, 8, 8}, 77));
+    BlockQuery query;
+    query.samples = samples.data();
+    BlockSearchCounts counts;
+    requireSame(index.match(query, 2, &counts), matchBlocksLinearly(source, 8, query, 2));
+    CHECK(counts.transforms == 1);
+    CHECK(index.memoryBytes() > bytes + std::size_t(source.box().volume()) * 16);
+    // A block that is there is found by bounds.
+    std::vector<float> there(512);
+    source.readBox({3, 4, 5}, {8, 8, 8}, there.data());
+    query.samples = there.data();
+    counts = {};
+    CHECK(index.match(query, 1, &counts).front().cost == 0);
+    CHECK(counts.transforms == 0);
+}
+
+TEST_CASE("BlockIndex: no transforms where they would need more memory than there may be", "[search]") {
+    const auto field = ballIn(48);  // mostly empty: the index is small, transforms are not
+    BlockIndexOptions options;
+    options.block = 8;
+    const std::size_t bytes = BlockIndex::build(field, options).memoryBytes();
+    const std::vector<float> samples = test::samplesOf(test::noiseField({8, 8, 8}, 77));
+    BlockQuery query;
+    query.samples = samples.data();
+    const double both = double(bytes) + BlockCorrelation::memoryNeeded({48, 48, 48}, 8);
+    for (bool enough : {true, false}) {
+        RunContext ctx;
+        ctx.maxMemory = std::uint64_t(both * (enough ? 1.01 : 0.99));
+        const BlockIndex index = BlockIndex::build(field, options, ctx);
+        BlockSearchCounts counts;
+        requireSame(index.match(query, by(BlockSearchWay::Correlation, 2), &counts),
+                    matchBlocksLinearly(*field, 8, query, 2));
+        CHECK(counts.transforms == (enough ? 1u : 0u));
+    }
 }
 
 TEST_CASE("BlockIndex: within a tolerance, no answer is further off than promised", "[search][property]") {
@@ -295,6 +354,16 @@ TEST_CASE("BlockIndex: many queries at once get the answers of each alone, for a
         const auto found = index.matchAll(queries, search, ctx, &counts);
         REQUIRE(found.size() == queries.size());
         CHECK(counts.exact > 0);
+        for (std::size_t i = 0; i < queries.size(); ++i) requireSame(found[i], index.match(queries[i], 2));
+    }
+    // An odd number, so that one goes through the transform alone.
+    queries.pop_back();
+    for (int threads : {1, 2, 5}) {
+        RunContext ctx;
+        ctx.threads = threads;
+        BlockSearchCounts counts;
+        const auto found = index.matchAll(queries, by(BlockSearchWay::Correlation, 2), ctx, &counts);
+        CHECK(counts.transforms > 10);
         for (std::size_t i = 0; i < queries.size(); ++i) requireSame(found[i], index.match(queries[i], 2));
     }
     CHECK(index.matchAll({}).empty());

@@ -69,6 +69,7 @@ void match(Run& run) {
     printLine(text + "\n  ]\n}");
     run.count("bounds_computed", result.counts.nodes);
     run.count("exact_costs_computed", result.counts.exact);
+    run.count("answered_by_correlation", result.counts.transforms);
     run.finish();
 }
 

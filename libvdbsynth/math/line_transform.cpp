@@ -1,0 +1,59 @@
+#include "libvdbsynth/math/line_transform.h"
+
+#include <cmath>
+
+namespace vdbsynth {
+
+// What kissfft does with its numbers besides adding and multiplying: to make roots of unity, once.
+static Lanes cos(const Lanes& angle) {
+    return {std::cos(double(angle))};
+}
+static Lanes sin(const Lanes& angle) {
+    return {std::sin(double(angle))};
+}
+static Lanes exp(const Lanes& power) {
+    return {std::exp(double(power))};
+}
+static Lanes operator*(std::size_t times, const Lanes& angle) {
+    return {double(times) * double(angle)};
+}
+
+}  // namespace vdbsynth
+
+#include <kissfft/kissfft.hh>
+
+namespace vdbsynth {
+
+struct LineTransform::Impl {
+    explicit Impl(int n) : length(n), transform(std::size_t(n), false) {}
+    int length;
+    kissfft<Lanes> transform;
+};
+
+LineTransform::LineTransform(int length) : mImpl(std::make_unique<Impl>(length)) {}
+LineTransform::LineTransform(LineTransform&&) noexcept = default;
+LineTransform& LineTransform::operator=(LineTransform&&) noexcept = default;
+LineTransform::~LineTransform() = default;
+
+int LineTransform::length() const {
+    return mImpl->length;
+}
+
+void LineTransform::run(const ComplexLanes* in, ComplexLanes* out) const {
+    mImpl->transform.transform(in, out);
+}
+
+int transformLength(int atLeast) {
+    for (int length = atLeast;; ++length) {
+        int rest = length;
+        for (int factor : {2, 3, 5})
+            while (rest % factor == 0) rest /= factor;
+        if (rest == 1) return length;
+    }
+}
+
+double transformRounding(double samples) {
+    return 1.3e-6 * std::ceil(std::log2(samples));
+}
+
+}  // namespace vdbsynth

@@ -1,7 +1,8 @@
 // Exact best blocks beside the rival: all squared differences at once by FFT (FFTW, single precision, all
 // threads), the plan and what does not depend on the query made beforehand. Both answer the same queries, cut
 // from another seed's sample, half with one octant masked; what they find is compared. Beside them a scan
-// that gives up early, and Faiss where it fits.
+// that gives up early, and Faiss where it fits. VDBSYNTH_BENCH_QUERIES is how many, VDBSYNTH_BENCH_WAY asks
+// ours for one of its ways, bounds or correlation.
 #include <benchmark/benchmark.h>
 #include <faiss/IndexFlat.h>
 #include <fftw3.h>

@@ -1,6 +1,6 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
-#include "libvdbsynth/synth/volume_analogy.h"
+#include "libvdbsynth/analogy/volume_analogy.h"
 #include "libvdbsynth/vdb/level_set.h"
 
 #include <cstdint>
@@ -62,7 +62,7 @@ struct AnalogyResult {
     float reach = 0;                   ///< [voxels] how far from the plain surface the texture goes
 };
 
-/// plain : textured = target : result (synth/volume_analogy.h), rebuilt to a valid narrow band; what the
+/// plain : textured = target : result (analogy/volume_analogy.h), rebuilt to a valid narrow band; what the
 /// textured models carry comes along. Faces of recorded domains that a solid touches are cuts: the pair goes
 /// on beyond them and nothing is copied from there, a target is capped there again; elsewhere the result may
 /// grow out of its domain.

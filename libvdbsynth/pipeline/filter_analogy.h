@@ -1,6 +1,6 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
-#include "libvdbsynth/synth/filter_analogy.h"
+#include "libvdbsynth/analogy/filter_analogy.h"
 #include "libvdbsynth/vdb/vdb_fwd.h"
 
 #include <vector>
@@ -17,7 +17,7 @@ struct FilterGridResult {
     FilterAnalogyStats stats;
 };
 
-/// Does to a grid of numbers what was done to others (synth/filter_analogy.h). Voxels of the result that
+/// Does to a grid of numbers what was done to others (analogy/filter_analogy.h). Voxels of the result that
 /// differ from its background are active; a fog volume stays one, at least 0. Voxels count, not the world:
 /// the target may have other voxels than the pairs.
 /// @param target  any class but a level set; its name, class and transform are the result's

@@ -37,7 +37,7 @@ struct SynthOptions {
     GridPtr guide;                        ///< a scalar by which parts of the exemplars are placed
     std::vector<GridPtr> exemplarGuides;  ///< the same scalar over each exemplar
     double guideWeight = 4;               ///< 0.001 to 1000, see BlockSynthesisOptions
-    double longestRun = 0.4;              ///< 0.01 to 1, see BlockSynthesisOptions
+    double longestRun = 0.3;              ///< 0.01 to 1, see BlockSynthesisOptions
     std::string indexFolder;              ///< BlockIndexOptions::cacheFolder; empty: none
     float halfWidth = kHalfWidth;         ///< [voxels] of the result
     CarriedValues carried = CarriedValues::Copied;

@@ -54,7 +54,7 @@ struct BlockSynthesisOptions {
     float guideWeight = 4;
     /// How much of an exemplar's patches with a surface one verbatim piece may have (optimizeTexture): what
     /// is beyond costs eight times as much, so the joints that less asks for are the ones that cost least.
-    double longestRun = 0.4;
+    double longestRun = 0.3;
     /// A target of which a part is known (optimizeTexture): its samples, and 1 where they are open; boxes of
     /// the target. Sources may then come from anywhere along every axis. Both or none.
     const BrickField* known = nullptr;

@@ -4,6 +4,7 @@
 #include "libvdbsynth/grid/pyramid.h"
 #include "libvdbsynth/synth/open_fill.h"
 #include "libvdbsynth/synth/patch_search.h"
+#include "libvdbsynth/synth/seam_cut.h"
 #include "libvdbsynth/synth/synthesis_passes.h"
 
 #include <algorithm>
@@ -174,7 +175,7 @@ public:
         result.field =
             withKnown(mGiven, 0, voteThroughMap(result.map, mPasses.front().exemplars, mContext), mContext);
         result.stats = mStats;
-        result.stats.block = result.map.block;
+        result.stats.block = mPasses.front().block;
         result.stats.levels = int(mPasses.size());
         return result;
     }
@@ -236,6 +237,9 @@ private:
         if (!mGiven.open.empty())
             mField = withKnown(mGiven, p, voteThroughMap(map, pass.exemplars, mContext, &level.exemplars),
                                mContext);
+        // What meets itself a period apart, or what is known, is left to the vote.
+        const bool tiles = std::count(mOptions.border.begin(), mOptions.border.end(), Border::Tile) > 0;
+        if (p == 0 && mGiven.open.empty() && !tiles) map = cutSeams(level, map, mField, mContext);
         mMap = std::move(map);
     }
 

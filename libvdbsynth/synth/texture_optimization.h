@@ -16,13 +16,18 @@ namespace vdbsynth {
 ///    section 3.3], so that all of the exemplar is used and shares of volume stay;
 ///  - a source costs a tenth less for each of the six neighbours whose source it goes on from: where costs
 ///    are alike, as in what is rough throughout, larger copies keep the roughness that a vote would smooth.
-/// Where options.which names an exemplar, sources of another one are not taken; options.guide adds to a cost.
-/// Patches are as long as the block in the last pass, three quarters of it before, and never more than half
-/// of the exemplar.
+///  - after the last round nothing is a mean any more: seams are cut where two sides look alike (seam_cut.h),
+///    and the result's map is that of the cells. Not along axes that tile and where the target is known in
+///    part: there the patches' vote is the result.
+/// Where options.which names an exemplar, sources of another one are not taken, by a patch's middle;
+/// options.guide adds to a cost. Patches are as long as the block in the last pass, three quarters of it
+/// before, and never more than half of the exemplar.
 ///
 /// @param exemplars  as synthesizeBlocks; they are also kept as dense arrays, four bytes a voxel
 /// @throw Error as synthesizeBlocks
-/// @par Cost    O(patches that are not constant * rounds * log(exemplar's side)); memory 36 bytes a patch
+/// @par Cost    O(patches that are not constant * rounds * log(exemplar's side)); memory 36 bytes a patch,
+/// and what
+///              cutSeams takes
 /// @par Repeats same bits for (inputs, options, ctx.seed), any number of threads
 BlockSynthesisResult optimizeTexture(const std::vector<std::shared_ptr<const BrickField>>& exemplars,
                                      const BlockSynthesisOptions& options, const RunContext& ctx = {});

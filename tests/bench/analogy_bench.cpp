@@ -10,7 +10,7 @@
 #include "libvdbsynth/base/random.h"
 #include "libvdbsynth/pipeline/analogy_steps.h"
 #include "libvdbsynth/pipeline/make.h"
-#include "libvdbsynth/synth/volume_analogy_steps.h"
+#include "libvdbsynth/analogy/volume_analogy_steps.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 
 #include <algorithm>

@@ -146,7 +146,8 @@ TEST_CASE("synthesize: sizes in voxels, an exemplar box, a mask", "[pipeline][pr
     options.block = 8;
     const SynthResult result = synthesize(exemplar, options);
     CHECK(result.model.domain == IndexBox{{4, 4, 4}, {73, 53, 35}});
-    for (const Index3& source : result.map.patches.source) CHECK(source.x + 8 <= 27);
+    const PatchMap& patches = result.map.patches;
+    for (const Index3& source : patches.source) REQUIRE(source.x + patches.block <= 27);
     options.exemplarMask = boxMask({{4, 4, 4}, {6, 6, 6}}, 1);
     CHECK(test::contains(test::thrownBy([&] { synthesize(exemplar, options); }).message, "--exemplar-mask"));
 }

@@ -10,16 +10,16 @@ BELOW = {}
 for room, direct in [
     ("base", []), ("math", ["base"]), ("geometry", ["math"]), ("grid", ["geometry"]),
     ("io", ["geometry", "grid"]), ("vdb", ["io"]), ("procedural", ["grid"]), ("surface", ["grid"]), ("search", ["grid", "io"]),
-    ("synth", ["search", "surface", "grid"]), ("measure", ["synth"]), ("pipeline", ["measure", "synth", "procedural", "vdb", "io"]), ("tools", ["pipeline"]),
+    ("synth", ["search", "grid"]), ("analogy", ["search", "surface", "grid"]), ("measure", ["synth"]), ("pipeline", ["measure", "synth", "analogy", "procedural", "vdb", "io"]), ("tools", ["pipeline"]),
 ]:
     BELOW[room] = {room}.union(*[BELOW[d] for d in direct]) if direct else {room}
 
 # Which rooms may see which third party.
 ALLOWED = {
     "openvdb/": {"vdb", "pipeline"}, "tbb/": {"base"}, "xxhash.h": {"base"}, "png.h": {"io"},
-    "tiny_obj_loader.h": {"io"}, "tiffio.h": {"io"}, "jpeglib.h": {"io"}, "Imf": {"io"}, "pugixml.hpp": {"io"}, "tiny_gltf.h": {"io"}, "zlib.h": {"io"}, "nanoflann.hpp": {"geometry"}, "flann/": {"search"}, "Eigen/": {"math", "geometry"}, "boost/": {"tools"}, "nlohmann/": {"tools"},
+    "tiny_obj_loader.h": {"io"}, "tiffio.h": {"io"}, "jpeglib.h": {"io"}, "Imf": {"io"}, "pugixml.hpp": {"io"}, "tiny_gltf.h": {"io"}, "zlib.h": {"io"}, "nanoflann.hpp": {"geometry"}, "flann/": {"search"}, "Eigen/": {"math", "geometry"}, "boost/graph/": {"math"}, "boost/program_options": {"tools"}, "nlohmann/": {"tools"},
 }
-ONE_FILE = {"png.h", "zlib.h", "nanoflann.hpp", "flann/", "tiny_obj_loader.h", "tiffio.h", "jpeglib.h", "Imf", "pugixml.hpp", "tiny_gltf.h", "xxhash.h", "boost/"}
+ONE_FILE = {"png.h", "zlib.h", "nanoflann.hpp", "flann/", "tiny_obj_loader.h", "tiffio.h", "jpeglib.h", "Imf", "pugixml.hpp", "tiny_gltf.h", "xxhash.h", "boost/graph/", "boost/program_options"}
 
 
 def main(root):

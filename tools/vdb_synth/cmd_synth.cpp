@@ -92,7 +92,7 @@ SynthOptions parseOptions(const Arguments& arguments) {
     options.carried = carriedValues(arguments);
     options.method = parseMethod(arguments);
     options.indexFolder = indexFolder(arguments);
-    options.longestRun = arguments.real("longest-run", 0.4, 0.01, 1);
+    options.longestRun = arguments.real("longest-run", 0.3, 0.01, 1);
     if (arguments.has("longest-run") && (options.draft || options.method != SynthesisMethod::Default))
         throw Error(ErrorCode::InvalidOption, "--longest-run: needs --method default and no --draft");
     options.halfWidth = float(arguments.real("half-width", 3, 1.5, 100));
@@ -275,7 +275,7 @@ const Command kSynth{
       "take blocks only from where this grid is active; its box is the domain (of the first exemplar)"},
      {"drift", "D", "how far sources may be from their own place along axes at 1x (voxels), default 0"},
      {"longest-run", "S",
-      "share of the exemplar that may be copied in one piece, 0.01 to 1, default 0.4; less is newer and has "
+      "share of the exemplar that may be copied in one piece, 0.01 to 1, default 0.3; less is newer and has "
       "more joints"},
      {"which", "FILE",
       "with several exemplars: which one goes where in the result; a .vdb with a grid of numbers (0 is the "

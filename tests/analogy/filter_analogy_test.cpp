@@ -1,4 +1,4 @@
-#include "libvdbsynth/synth/filter_analogy.h"
+#include "libvdbsynth/analogy/filter_analogy.h"
 
 #include <catch2/catch.hpp>
 
@@ -72,7 +72,7 @@ bool same(const BrickField& a, const BrickField& b) {
 }  // namespace
 
 TEST_CASE("makeFilterAnalogy: learns a blur from one set of balls and does it to another",
-          "[synth][property]") {
+          "[analogy][property]") {
     const BrickField before = balls(1, 48), target = balls(2, 40);
     for (double sigma : {0.8, 1.5, 2.5}) {
         const int half = int(std::ceil(3 * sigma));
@@ -84,7 +84,7 @@ TEST_CASE("makeFilterAnalogy: learns a blur from one set of balls and does it to
     }
 }
 
-TEST_CASE("makeFilterAnalogy: a filter within reach that is affine is found whole", "[synth]") {
+TEST_CASE("makeFilterAnalogy: a filter within reach that is affine is found whole", "[analogy]") {
     const BrickField before = balls(3, 40), target = balls(4, 32);
     const auto of = [](const std::vector<float>& v, int) { return 0.25f + 2 * v[4] - 0.5f * v[22]; };
     const BrickField after = eachNeighbourhood(before, 1, of), wanted = eachNeighbourhood(target, 1, of);
@@ -92,7 +92,7 @@ TEST_CASE("makeFilterAnalogy: a filter within reach that is affine is found whol
     CHECK(missed(made.after, wanted, target) < 1e-3);
 }
 
-TEST_CASE("makeFilterAnalogy: the search learns what is not linear", "[synth]") {
+TEST_CASE("makeFilterAnalogy: the search learns what is not linear", "[analogy]") {
     const BrickField before = balls(5, 56), target = balls(6, 32);
     // A dilation: the largest value around.
     const auto of = [](const std::vector<float>& v, int) { return *std::max_element(v.begin(), v.end()); };
@@ -105,7 +105,7 @@ TEST_CASE("makeFilterAnalogy: the search learns what is not linear", "[synth]") 
     CHECK(error < 0.6 * made.stats.affineError / made.stats.change);
 }
 
-TEST_CASE("makeFilterAnalogy: same bits for any number of threads", "[synth][determinism]") {
+TEST_CASE("makeFilterAnalogy: same bits for any number of threads", "[analogy][determinism]") {
     const BrickField before = balls(5, 48), target = balls(6, 32);
     const auto of = [](const std::vector<float>& v, int) { return *std::max_element(v.begin(), v.end()); };
     const BrickField after = eachNeighbourhood(before, 1, of);
@@ -116,7 +116,7 @@ TEST_CASE("makeFilterAnalogy: same bits for any number of threads", "[synth][det
                makeFilterAnalogy({{&before, &after}}, target, {}, three).after));
 }
 
-TEST_CASE("makeFilterAnalogy: what it refuses", "[synth][error]") {
+TEST_CASE("makeFilterAnalogy: what it refuses", "[analogy][error]") {
     const BrickField before = balls(1, 24), constant(IndexBox::fromSize({40, 40, 40}), 1);
     const auto code = [&](const BrickField& learnt, int half, int levels, int components) {
         FilterAnalogyOptions options;
@@ -131,7 +131,7 @@ TEST_CASE("makeFilterAnalogy: what it refuses", "[synth][error]") {
     CHECK(code(before, 2, 3, 3) == int(ErrorCode::InvalidOption));
 }
 
-TEST_CASE("makeFilterAnalogy: a constant target stays one, and it can be stopped", "[synth]") {
+TEST_CASE("makeFilterAnalogy: a constant target stays one, and it can be stopped", "[analogy]") {
     const BrickField before = balls(1, 40), after = blurred(before, 1, 2);
     const BrickField constant(IndexBox::fromSize({20, 20, 20}), 1);
     const FilterAnalogyResult made = makeFilterAnalogy({{&before, &after}}, constant, {});

@@ -1,4 +1,4 @@
-#include "libvdbsynth/synth/analogy_features.h"
+#include "libvdbsynth/analogy/analogy_features.h"
 
 #include <catch2/catch.hpp>
 
@@ -6,7 +6,7 @@
 
 using namespace vdbsynth;
 
-TEST_CASE("Features: samples lie one voxel apart along the frame's axes, by hand", "[synth]") {
+TEST_CASE("Features: samples lie one voxel apart along the frame's axes, by hand", "[analogy]") {
     const BrickField x = test::fieldFrom({24, 24, 24}, [](const Index3& p) { return float(p.x); });
     FeatureShape shape;
     shape.half = 1;
@@ -28,7 +28,7 @@ TEST_CASE("Features: samples lie one voxel apart along the frame's axes, by hand
     for (int k = 0; k < 9; ++k) CHECK(made[std::size_t(k)] == Approx(9.5));
 }
 
-TEST_CASE("Features: turning the field and the frame together changes nothing", "[synth][property]") {
+TEST_CASE("Features: turning the field and the frame together changes nothing", "[analogy][property]") {
     const auto wavy = [](double x, double y, double z) {
         return std::sin(0.3 * x) + 0.2 * y + std::cos(0.25 * z);
     };
@@ -48,7 +48,7 @@ TEST_CASE("Features: turning the field and the frame together changes nothing", 
     for (std::size_t i = 0; i < of.size(); ++i) CHECK(of[i] == Approx(turned[i]).margin(1e-4));
 }
 
-TEST_CASE("ReducedFeatures: the two parts together are the projection, and the depth", "[synth]") {
+TEST_CASE("ReducedFeatures: the two parts together are the projection, and the depth", "[analogy]") {
     FeatureShape shape;
     shape.half = 1;
     shape.coarse = false;
@@ -68,7 +68,7 @@ TEST_CASE("ReducedFeatures: the two parts together are the projection, and the d
     CHECK(out[7] == Approx(-2.5));
 }
 
-TEST_CASE("DepthClasses: open where depths near by do not agree", "[synth]") {
+TEST_CASE("DepthClasses: open where depths near by do not agree", "[analogy]") {
     DepthClasses depths(2);
     for (int d = -10; d <= 10; ++d) {
         // A shell three voxels thick with a rough outside: full from -4 to -2, mixed at -1 to 0, else empty.
@@ -83,7 +83,7 @@ TEST_CASE("DepthClasses: open where depths near by do not agree", "[synth]") {
 }
 
 TEST_CASE("Features: bent along a ball they are those of a plane, straight ones are not",
-          "[synth][property]") {
+          "[analogy][property]") {
     constexpr double kRadius = 8;
     const BrickField ball = test::fieldFrom({32, 32, 32}, [&](const Index3& p) {
         return float(std::hypot(p.x - 16, p.y - 16, p.z - 16) - kRadius);

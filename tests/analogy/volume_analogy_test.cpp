@@ -1,9 +1,9 @@
-#include "libvdbsynth/synth/volume_analogy.h"
+#include "libvdbsynth/analogy/volume_analogy.h"
 
 #include <catch2/catch.hpp>
 
 #include "libvdbsynth/grid/field_sampling.h"
-#include "libvdbsynth/synth/analogy_level.h"
+#include "libvdbsynth/analogy/analogy_level.h"
 #include "tests/support/shapes.h"
 
 using namespace vdbsynth;
@@ -41,7 +41,7 @@ VolumeAnalogyOptions levels(int count) {
 
 }  // namespace
 
-TEST_CASE("makeAnalogy: dilation of a ball learnt from another is an offset", "[synth]") {
+TEST_CASE("makeAnalogy: dilation of a ball learnt from another is an offset", "[analogy]") {
     const auto plain = test::sphereField(48, 11), textured = test::sphereField(48, 14.5),
                target = test::sphereField(44, 9);
     const FrameField from = framesAlong(plain, {0, 0, 1}), to = framesAlong(target, {0, 0, 1});
@@ -62,7 +62,7 @@ TEST_CASE("makeAnalogy: dilation of a ball learnt from another is an offset", "[
     CHECK(sum / count == Approx(3.5).margin(0.25));
 }
 
-TEST_CASE("makeAnalogy: grooves follow the target's direction, at the pair's spacing", "[synth]") {
+TEST_CASE("makeAnalogy: grooves follow the target's direction, at the pair's spacing", "[analogy]") {
     const Setting s = grooves();
     const VolumeAnalogyResult made = makeAnalogy({s.pair()}, *s.target, s.targetFrames, levels(1));
     // Heights differ across x, the grooves' other axis here, and hardly along y.
@@ -91,7 +91,7 @@ TEST_CASE("makeAnalogy: grooves follow the target's direction, at the pair's spa
     }
 }
 
-TEST_CASE("makeAnalogy: the same bits for any threads, other bits for another seed", "[synth][tsan]") {
+TEST_CASE("makeAnalogy: the same bits for any threads, other bits for another seed", "[analogy][tsan]") {
     const Setting s = grooves();
     RunContext one, four, other;
     one.threads = 1;
@@ -105,7 +105,7 @@ TEST_CASE("makeAnalogy: the same bits for any threads, other bits for another se
     CHECK(a != made(other));
 }
 
-TEST_CASE("makeAnalogy: refuses what it cannot work with, and stops when asked to", "[synth]") {
+TEST_CASE("makeAnalogy: refuses what it cannot work with, and stops when asked to", "[analogy]") {
     const Setting s = grooves();
     const auto code = [&](const VolumeAnalogyOptions& options, const RunContext& ctx = {}) {
         return test::thrownBy([&] { makeAnalogy({s.pair()}, *s.target, s.targetFrames, options, ctx); }).code;
@@ -126,7 +126,7 @@ TEST_CASE("makeAnalogy: refuses what it cannot work with, and stops when asked t
     CHECK(code(levels(1), stopped) == int(ErrorCode::Cancelled));
 }
 
-TEST_CASE("usefulLevels: thin things hold fewer", "[synth]") {
+TEST_CASE("usefulLevels: thin things hold fewer", "[analogy]") {
     // A level has to be 36 voxels wide: two are no use to a field of 64.
     for (const auto& [side, levels] : {std::pair{144, 3}, std::pair{96, 2}, std::pair{64, 1}}) {
         const auto flat = test::planeField(side, 20), step = test::planeField(side, 32);
@@ -142,7 +142,7 @@ TEST_CASE("usefulLevels: thin things hold fewer", "[synth]") {
     CHECK(usefulLevels({{plain, needles, &frames, plain->box()}}) < 3);
 }
 
-TEST_CASE("analogyVoxels: bends are those of the surface through a voxel", "[synth]") {
+TEST_CASE("analogyVoxels: bends are those of the surface through a voxel", "[analogy]") {
     const auto bends = [](std::shared_ptr<const BrickField> field, const Vec3f& along, int level) {
         const FrameField frames = framesAlong(field, along);
         const BrickField coarse = analogyPyramid(*field, level + 1, {}).distance.back();
@@ -167,7 +167,7 @@ TEST_CASE("analogyVoxels: bends are those of the surface through a voxel", "[syn
     }
 }
 
-TEST_CASE("makeAnalogy: bent neighbourhoods, same bits for any number of threads", "[synth][determinism]") {
+TEST_CASE("makeAnalogy: bent neighbourhoods, same bits for any number of threads", "[analogy][determinism]") {
     const Setting s = grooves();
     VolumeAnalogyOptions bent = levels(1);
     bent.bent = true;

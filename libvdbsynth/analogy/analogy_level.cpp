@@ -1,4 +1,4 @@
-#include "libvdbsynth/synth/analogy_level.h"
+#include "libvdbsynth/analogy/analogy_level.h"
 
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/grid/field_sampling.h"

@@ -1,6 +1,6 @@
 #pragma once
 #include "libvdbsynth/math/pca.h"
-#include "libvdbsynth/synth/analogy_level.h"
+#include "libvdbsynth/analogy/analogy_level.h"
 
 #include <cstddef>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "libvdbsynth/synth/volume_analogy_steps.h"
+#include "libvdbsynth/analogy/volume_analogy_steps.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"

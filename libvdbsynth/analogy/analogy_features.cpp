@@ -1,4 +1,4 @@
-#include "libvdbsynth/synth/analogy_features.h"
+#include "libvdbsynth/analogy/analogy_features.h"
 
 #include <algorithm>
 #include <cmath>

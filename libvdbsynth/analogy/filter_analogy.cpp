@@ -1,4 +1,4 @@
-#include "libvdbsynth/synth/filter_analogy.h"
+#include "libvdbsynth/analogy/filter_analogy.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"

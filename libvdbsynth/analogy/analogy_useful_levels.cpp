@@ -1,5 +1,5 @@
-#include "libvdbsynth/synth/analogy_level.h"
-#include "libvdbsynth/synth/volume_analogy.h"
+#include "libvdbsynth/analogy/analogy_level.h"
+#include "libvdbsynth/analogy/volume_analogy.h"
 
 #include <algorithm>
 #include <array>

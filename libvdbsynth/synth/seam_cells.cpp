@@ -1,0 +1,168 @@
+#include "libvdbsynth/synth/seam_cells.h"
+
+#include "libvdbsynth/base/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace vdbsynth {
+namespace {
+
+constexpr int kMostMargin = 2;  // [voxels]
+constexpr int kOccupancy = 8;   // side of what is marked as taken at once
+constexpr std::size_t kGroupsLookedAt = 64;
+
+std::int8_t nearValue(float distance) {
+    const int value = int(std::lround(double(distance) * 64));
+    return std::int8_t(std::clamp(value, -NearField::kFar, NearField::kFar));
+}
+
+std::size_t volumeOf(const Index3& size) {
+    return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
+}
+
+// The parts of kOccupancy^3 places that a box and what touches it lie in.
+std::vector<std::size_t> partsAround(const IndexBox& box, const Index3& parts) {
+    IndexBox around = box.expanded(1);
+    for (int axis = 0; axis < 3; ++axis) {
+        around.min[axis] = std::max(0, around.min[axis]) / kOccupancy;
+        around.max[axis] = std::min(around.max[axis] / kOccupancy, parts[axis] - 1);
+    }
+    std::vector<std::size_t> all;
+    for (int x = around.min.x; x <= around.max.x; ++x)
+        for (int y = around.min.y; y <= around.max.y; ++y)
+            for (int z = around.min.z; z <= around.max.z; ++z) all.push_back(numberIn(parts, {x, y, z}));
+    return all;
+}
+
+}  // namespace
+
+NearField::NearField(const BrickField& field, const RunContext& ctx)
+    : mSize(field.box().size()), mSamples(volumeOf(field.box().size())) {
+    const std::size_t samples = std::size_t(mSize.y) * std::size_t(mSize.z);
+    parallelFor(ctx, std::size_t(mSize.x), 4, [&](std::size_t begin, std::size_t end) {
+        std::vector<float> plane(samples);
+        for (std::size_t x = begin; x < end; ++x) {
+            field.readBox({int(x), 0, 0}, {1, mSize.y, mSize.z}, plane.data());
+            std::transform(plane.begin(), plane.end(), mSamples.begin() + std::ptrdiff_t(x * samples),
+                           nearValue);
+        }
+    });
+}
+
+NearField::NearField(const DenseField& field) : mSize(field.size), mSamples(field.samples.size()) {
+    std::transform(field.samples.begin(), field.samples.end(), mSamples.begin(), nearValue);
+}
+
+bool NearField::hasSurface(const Index3& corner) const {
+    for (int x = 0; x < kSeamCell; ++x)
+        for (int y = 0; y < kSeamCell; ++y)
+            for (int z = 0; z < kSeamCell; ++z)
+                if (std::abs(*at(corner + Index3{x, y, z})) < kFar) return true;
+    return false;
+}
+
+std::size_t NearField::surfaceCells() const {
+    std::size_t count = 0;
+    for (int x = 0; x + kSeamCell <= mSize.x; x += kSeamCell)
+        for (int y = 0; y + kSeamCell <= mSize.y; y += kSeamCell)
+            for (int z = 0; z + kSeamCell <= mSize.z; z += kSeamCell) count += hasSurface({x, y, z});
+    return count;
+}
+
+int cellDifference(const NearField& a, const Index3& p, const NearField& b, const Index3& q) {
+    int sum = 0;
+    for (int x = 0; x < kSeamCell; ++x)
+        for (int y = 0; y < kSeamCell; ++y) {
+            const std::int8_t *left = a.at(p + Index3{x, y, 0}), *right = b.at(q + Index3{x, y, 0});
+            for (int z = 0; z < kSeamCell; ++z) sum += std::abs(left[z] - right[z]);
+        }
+    return sum;
+}
+
+SeamCells::SeamCells(const PatchMap& map) {
+    // Patches begin a stride apart, so that what is at most this long lies inside one.
+    const int longest = map.block - map.stride + 1;
+    const int margin = std::clamp((longest - kSeamCell) / 2, 0, kMostMargin);
+    mMargin = {margin, margin, margin};
+    mBlocks.target = map.target;
+    mBlocks.stride = kSeamCell;
+    mBlocks.block = kSeamCell + 2 * margin;
+    mBlocks.allocate();
+    mCount = mBlocks.lattice();
+    const Index3 patches = map.lattice();
+    for (int axis = 0; axis < 3; ++axis) {
+        mPatchesOver[axis].assign(std::size_t(mCount[axis]), {patches[axis], -1});
+        for (int a = 0; a < patches[axis]; ++a) {
+            const int begin = map.origin(axis, a), end = begin + map.block;
+            Span cells{0, -1};
+            for (int c = begin / kSeamCell; c < mCount[axis]; ++c) {
+                const int at = mBlocks.origin(axis, c);
+                if (at < begin || at + mBlocks.block > end) continue;
+                cells = {cells.last < 0 ? c : cells.first, c};
+                Span& over = mPatchesOver[axis][std::size_t(c)];
+                over = {std::min(over.first, a), a};
+            }
+            mCellsInside[axis].push_back(cells);
+        }
+    }
+}
+
+IndexBox SeamCells::inside(const Index3& patch) const {
+    IndexBox cells;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Span& span = mCellsInside[axis][std::size_t(patch[axis])];
+        cells.min[axis] = span.first;
+        cells.max[axis] = span.last;
+    }
+    return cells;
+}
+
+std::size_t SeamCells::strongestPatch(const PatchMap& map, const Index3& cell) const {
+    const Index3 middle = cornerOf(cell) + Index3{kSeamCell / 2, kSeamCell / 2, kSeamCell / 2},
+                 patches = map.lattice();
+    const Span x = mPatchesOver[0][std::size_t(cell.x)], y = mPatchesOver[1][std::size_t(cell.y)],
+               z = mPatchesOver[2][std::size_t(cell.z)];
+    std::size_t best = 0;
+    float most = -1;
+    for (int a = x.first; a <= x.last; ++a)
+        for (int b = y.first; b <= y.last; ++b) {
+            const float across = voteWeight(map.block, middle.x - map.origin(0, a)) *
+                                 voteWeight(map.block, middle.y - map.origin(1, b));
+            for (int c = z.first; c <= z.last; ++c) {
+                const std::size_t i = numberIn(patches, {a, b, c});
+                const float say = across * voteWeight(map.block, middle.z - map.origin(2, c)) *
+                                  (map.weight.empty() ? 1.f : map.weight[i]);
+                if (say <= most) continue;
+                most = say;
+                best = i;
+            }
+        }
+    return best;
+}
+
+std::vector<std::vector<std::int32_t>> groupsApart(const std::vector<IndexBox>& boxes, const Index3& count) {
+    Index3 parts;
+    for (int axis = 0; axis < 3; ++axis) parts[axis] = count[axis] / kOccupancy + 1;
+    std::vector<std::vector<std::int32_t>> groups;
+    std::vector<std::vector<std::uint8_t>> taken;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        if (boxes[i].empty()) continue;
+        const std::vector<std::size_t> wanted = partsAround(boxes[i], parts);
+        std::size_t g = groups.size() - std::min(groups.size(), kGroupsLookedAt);
+        while (g < groups.size() &&
+               std::any_of(wanted.begin(), wanted.end(), [&](std::size_t w) { return taken[g][w]; }))
+            ++g;
+        if (g == groups.size()) {
+            groups.emplace_back();
+            taken.emplace_back(volumeOf(parts), 0);
+            if (g >= kGroupsLookedAt) taken[g - kGroupsLookedAt] = {};
+        }
+        groups[g].push_back(std::int32_t(i));
+        for (std::size_t w : wanted) taken[g][w] = 1;
+    }
+    return groups;
+}
+
+}  // namespace vdbsynth

@@ -1,6 +1,6 @@
 #pragma once
-#include "libvdbsynth/math/pca.h"
 #include "libvdbsynth/analogy/analogy_level.h"
+#include "libvdbsynth/math/pca.h"
 
 #include <cstddef>
 #include <vector>

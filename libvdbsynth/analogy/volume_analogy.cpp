@@ -1,10 +1,10 @@
 #include "libvdbsynth/analogy/volume_analogy.h"
 
+#include "libvdbsynth/analogy/volume_analogy_steps.h"
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/base/parallel_sort.h"
 #include "libvdbsynth/grid/pyramid.h"
-#include "libvdbsynth/analogy/volume_analogy_steps.h"
 
 #include <algorithm>
 #include <array>

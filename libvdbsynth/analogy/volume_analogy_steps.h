@@ -1,8 +1,8 @@
 #pragma once
-#include "libvdbsynth/grid/field_sampling.h"
-#include "libvdbsynth/search/feature_index.h"
 #include "libvdbsynth/analogy/analogy_features.h"
 #include "libvdbsynth/analogy/volume_analogy.h"
+#include "libvdbsynth/grid/field_sampling.h"
+#include "libvdbsynth/search/feature_index.h"
 
 #include <optional>
 #include <vector>

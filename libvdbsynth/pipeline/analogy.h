@@ -1,6 +1,6 @@
 #pragma once
-#include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/analogy/volume_analogy.h"
+#include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/vdb/level_set.h"
 
 #include <cstdint>

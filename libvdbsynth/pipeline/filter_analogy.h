@@ -1,6 +1,6 @@
 #pragma once
-#include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/analogy/filter_analogy.h"
+#include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/vdb/vdb_fwd.h"
 
 #include <vector>

@@ -2,8 +2,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "libvdbsynth/grid/field_sampling.h"
 #include "libvdbsynth/analogy/analogy_level.h"
+#include "libvdbsynth/grid/field_sampling.h"
 #include "tests/support/shapes.h"
 
 using namespace vdbsynth;

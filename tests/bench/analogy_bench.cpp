@@ -6,11 +6,11 @@
 #include <flann/flann.hpp>
 #include <nlohmann/json.hpp>
 
+#include "libvdbsynth/analogy/volume_analogy_steps.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/base/random.h"
 #include "libvdbsynth/pipeline/analogy_steps.h"
 #include "libvdbsynth/pipeline/make.h"
-#include "libvdbsynth/analogy/volume_analogy_steps.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 
 #include <algorithm>

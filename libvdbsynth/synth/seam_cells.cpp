@@ -9,9 +9,9 @@
 namespace vdbsynth {
 namespace {
 
-constexpr int kMostMargin = 2;  // [voxels]
-constexpr int kOccupancy = 8;   // side of what is marked as taken at once
-constexpr std::size_t kGroupsLookedAt = 64;
+constexpr int kMostMargin = 2;               // [voxels]
+constexpr int kOccupancy = 8;                // side of what is marked as taken at once
+constexpr std::size_t kGroupsLookedAt = 64;  // as many as a word has bits
 
 std::int8_t nearValue(float distance) {
     const int value = int(std::lround(double(distance) * 64));
@@ -85,20 +85,22 @@ SeamCells::SeamCells(const PatchMap& map) {
     // Patches begin a stride apart, so that what is at most this long lies inside one.
     const int longest = map.block - map.stride + 1;
     const int margin = std::clamp((longest - kSeamCell) / 2, 0, kMostMargin);
-    mMargin = {margin, margin, margin};
     mBlocks.target = map.target;
     mBlocks.stride = kSeamCell;
     mBlocks.block = kSeamCell + 2 * margin;
     mBlocks.allocate();
     mCount = mBlocks.lattice();
-    const Index3 patches = map.lattice();
+    mPatches = map.lattice();
+    for (int i = 0; i < map.block; ++i) mWeights.push_back(voteWeight(map.block, i));
     for (int axis = 0; axis < 3; ++axis) {
-        mPatchesOver[axis].assign(std::size_t(mCount[axis]), {patches[axis], -1});
-        for (int a = 0; a < patches[axis]; ++a) {
+        for (int c = 0; c < mCount[axis]; ++c) mCorners[axis].push_back(mBlocks.origin(axis, c) + margin);
+        mPatchesOver[axis].assign(std::size_t(mCount[axis]), {mPatches[axis], -1});
+        for (int a = 0; a < mPatches[axis]; ++a) {
             const int begin = map.origin(axis, a), end = begin + map.block;
+            mOrigins[axis].push_back(begin);
             Span cells{0, -1};
             for (int c = begin / kSeamCell; c < mCount[axis]; ++c) {
-                const int at = mBlocks.origin(axis, c);
+                const int at = mCorners[axis][std::size_t(c)] - margin;
                 if (at < begin || at + mBlocks.block > end) continue;
                 cells = {cells.last < 0 ? c : cells.first, c};
                 Span& over = mPatchesOver[axis][std::size_t(c)];
@@ -120,25 +122,24 @@ IndexBox SeamCells::inside(const Index3& patch) const {
 }
 
 std::size_t SeamCells::strongestPatch(const PatchMap& map, const Index3& cell) const {
-    const Index3 middle = cornerOf(cell) + Index3{kSeamCell / 2, kSeamCell / 2, kSeamCell / 2},
-                 patches = map.lattice();
+    const Index3 middle = cornerOf(cell) + Index3{kSeamCell / 2, kSeamCell / 2, kSeamCell / 2};
     const Span x = mPatchesOver[0][std::size_t(cell.x)], y = mPatchesOver[1][std::size_t(cell.y)],
                z = mPatchesOver[2][std::size_t(cell.z)];
+    const auto weight = [&](int axis, int patch) {
+        return mWeights[std::size_t(middle[axis] - mOrigins[axis][std::size_t(patch)])];
+    };
     std::size_t best = 0;
     float most = -1;
     for (int a = x.first; a <= x.last; ++a)
-        for (int b = y.first; b <= y.last; ++b) {
-            const float across = voteWeight(map.block, middle.x - map.origin(0, a)) *
-                                 voteWeight(map.block, middle.y - map.origin(1, b));
+        for (int b = y.first; b <= y.last; ++b)
             for (int c = z.first; c <= z.last; ++c) {
-                const std::size_t i = numberIn(patches, {a, b, c});
-                const float say = across * voteWeight(map.block, middle.z - map.origin(2, c)) *
-                                  (map.weight.empty() ? 1.f : map.weight[i]);
+                const std::size_t i = numberIn(mPatches, {a, b, c});
+                const float say =
+                    weight(0, a) * weight(1, b) * weight(2, c) * (map.weight.empty() ? 1.f : map.weight[i]);
                 if (say <= most) continue;
                 most = say;
                 best = i;
             }
-        }
     return best;
 }
 
@@ -146,21 +147,23 @@ std::vector<std::vector<std::int32_t>> groupsApart(const std::vector<IndexBox>& 
     Index3 parts;
     for (int axis = 0; axis < 3; ++axis) parts[axis] = count[axis] / kOccupancy + 1;
     std::vector<std::vector<std::int32_t>> groups;
-    std::vector<std::vector<std::uint8_t>> taken;
+    // [part] a bit for each of the last groups that has a box there: group g has bit g % kGroupsLookedAt
+    std::vector<std::uint64_t> taken(volumeOf(parts), 0);
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         if (boxes[i].empty()) continue;
         const std::vector<std::size_t> wanted = partsAround(boxes[i], parts);
+        std::uint64_t without = 0;
+        for (std::size_t part : wanted) without |= taken[part];
         std::size_t g = groups.size() - std::min(groups.size(), kGroupsLookedAt);
-        while (g < groups.size() &&
-               std::any_of(wanted.begin(), wanted.end(), [&](std::size_t w) { return taken[g][w]; }))
-            ++g;
+        while (g < groups.size() && (without >> g % kGroupsLookedAt & 1)) ++g;
+        const std::uint64_t bit = std::uint64_t(1) << g % kGroupsLookedAt;
         if (g == groups.size()) {
             groups.emplace_back();
-            taken.emplace_back(volumeOf(parts), 0);
-            if (g >= kGroupsLookedAt) taken[g - kGroupsLookedAt] = {};
+            if (g >= kGroupsLookedAt)
+                for (std::uint64_t& part : taken) part &= ~bit;
         }
         groups[g].push_back(std::int32_t(i));
-        for (std::size_t w : wanted) taken[g][w] = 1;
+        for (std::size_t part : wanted) taken[part] |= bit;
     }
     return groups;
 }

@@ -56,7 +56,10 @@ public:
     const Index3& count() const { return mCount; }
     std::size_t number(const Index3& cell) const { return numberIn(mCount, cell); }
     /// Where a cell begins in the target, without its margin.
-    Index3 cornerOf(const Index3& cell) const { return mBlocks.originOf(cell) + mMargin; }
+    Index3 cornerOf(const Index3& cell) const {
+        return {mCorners[0][std::size_t(cell.x)], mCorners[1][std::size_t(cell.y)],
+                mCorners[2][std::size_t(cell.z)]};
+    }
     /// A map with a block for each cell and its margin, still without sources.
     const PatchMap& blocks() const { return mBlocks; }
     /// The cells that, with their margins, lie inside a patch; may be empty.
@@ -70,7 +73,9 @@ private:
         int first, last;
     };
     PatchMap mBlocks;
-    Index3 mCount, mMargin;
+    Index3 mCount, mPatches;
+    std::vector<int> mCorners[3], mOrigins[3];  // of cells and of patches along each axis
+    std::vector<float> mWeights;                // of a patch's voxels in a vote, along an axis
     std::vector<Span> mPatchesOver[3], mCellsInside[3];
 };
 

@@ -113,33 +113,43 @@ public:
             stage.advance(group.size());
         }
         PatchMap result = mCells.blocks();
-        for (std::size_t i = 0; i < mTaken.size(); ++i) {
+        forEachCell([&](const Index3& cell) {
+            const std::size_t i = mCells.number(cell);
             const Shift& shift = mShifts.all[std::size_t(mTaken[i])];
             result.exemplar[i] = shift.exemplar;
-            result.source[i] = result.originOf(result.place(i)) + shift.by;
-        }
+            result.source[i] = result.originOf(cell) + shift.by;
+        });
         return result;
     }
 
 private:
     // At first every cell copies by the patch that has most say in its middle.
     void takeStrongest() {
-        const Index3 count = mCells.count();
         mTaken.resize(mCells.blocks().source.size());
+        forEachCell([&](const Index3& cell) {
+            mTaken[mCells.number(cell)] = mShifts.ofPatch[mCells.strongestPatch(mMap, cell)];
+        });
+    }
+
+    // Calls body(cell) for all cells, on all threads.
+    template <typename Body>
+    void forEachCell(const Body& body) const {
+        const Index3 count = mCells.count();
         parallelFor(mContext, std::size_t(count.x), 1, [&](std::size_t begin, std::size_t end) {
-            forEachIn({{int(begin), 0, 0}, {int(end) - 1, count.y - 1, count.z - 1}},
-                      [&](const Index3& cell) {
-                          mTaken[mCells.number(cell)] = mShifts.ofPatch[mCells.strongestPatch(mMap, cell)];
-                      });
+            forEachIn({{int(begin), 0, 0}, {int(end) - 1, count.y - 1, count.z - 1}}, body);
         });
     }
 
     // Cells of pieces that are too long from the beginning are dear to keep.
     void markTooLong() {
         mTooLong.assign(mTaken.size(), 0);
+        std::vector<std::size_t> count(mShifts.all.size(), 0);
+        for (std::int32_t s : mTaken) ++count[std::size_t(s)];
         std::vector<std::vector<Index3>> cells(mShifts.all.size());
         forEachIn(IndexBox::fromSize(mCells.count()), [&](const Index3& cell) {
-            cells[std::size_t(mTaken[mCells.number(cell)])].push_back(cell);
+            const std::size_t s = std::size_t(mTaken[mCells.number(cell)]);
+            // Fewer cells than may have a surface are never too many.
+            if (count[s] > mMost[std::size_t(mShifts.all[s].exemplar)]) cells[s].push_back(cell);
         });
         parallelFor(mContext, cells.size(), 16, [&](std::size_t begin, std::size_t end) {
             for (std::size_t s = begin; s < end; ++s)

@@ -33,14 +33,33 @@ std::vector<float> constantSources(const PatchMap& map,
     return constants;
 }
 
-// The one value of all blocks of a span, or not a number.
-float sharedConstant(const PatchMap& map, const Span span[3], const std::vector<float>& constants) {
-    const float first = constants[map.index({span[0].first, span[1].first, span[2].first})];
+// True if test(number of the block, its place) holds for all blocks of a span.
+template <typename Test>
+bool everyBlock(const Span span[3], const Index3& lattice, const Test& test) {
     for (int a = span[0].first; a <= span[0].last; ++a)
-        for (int b = span[1].first; b <= span[1].last; ++b)
+        for (int b = span[1].first; b <= span[1].last; ++b) {
+            const std::size_t row =
+                (std::size_t(a) * std::size_t(lattice.y) + std::size_t(b)) * std::size_t(lattice.z);
             for (int c = span[2].first; c <= span[2].last; ++c)
-                if (constants[map.index({a, b, c})] != first) return std::numeric_limits<float>::quiet_NaN();
-    return first;
+                if (!test(row + std::size_t(c), Index3{a, b, c})) return false;
+        }
+    return true;
+}
+
+// The one value of all blocks of a span, or not a number.
+float sharedConstant(const Index3& lattice, const Span span[3], std::size_t first,
+                     const std::vector<float>& constants) {
+    const bool same = everyBlock(
+        span, lattice, [&](std::size_t i, const Index3&) { return constants[i] == constants[first]; });
+    return same ? constants[first] : std::numeric_limits<float>::quiet_NaN();
+}
+
+// True if all blocks of a span propose the same for what they share.
+bool sharedSource(const PatchMap& map, const Index3& lattice, const Span span[3], std::size_t first) {
+    const Index3 shift = map.source[first] - map.originOf({span[0].first, span[1].first, span[2].first});
+    return everyBlock(span, lattice, [&](std::size_t i, const Index3& place) {
+        return map.exemplar[i] == map.exemplar[first] && map.source[i] - map.originOf(place) == shift;
+    });
 }
 
 // What blocks say of the samples of one brick.
@@ -186,9 +205,17 @@ BrickField voteThroughMap(const PatchMap& map,
                 map.covering(axis, brick.min[axis], span[axis].first, ignored);
                 map.covering(axis, std::min(brick.max[axis], map.target[axis] - 1), ignored, span[axis].last);
             }
-            const float shared = sharedConstant(map, span, constants);
+            const Index3 corner{span[0].first, span[1].first, span[2].first};
+            const std::size_t first = map.index(corner);
+            const float shared = sharedConstant(lattice, span, first, constants);
             if (!std::isnan(shared)) {
                 std::fill(samples, samples + BrickField::kSamples, shared);
+                return;
+            }
+            // The mean of equal samples is that sample, to the last bit: sums are double, samples are not.
+            if (IndexBox::fromSize(map.target).contains(brick) && sharedSource(map, lattice, span, first)) {
+                exemplars[std::size_t(map.exemplar[first])]->readBox(
+                    brick.min + map.source[first] - map.originOf(corner), brick.size(), samples);
                 return;
             }
             BrickVotes votes;

@@ -10,7 +10,7 @@ namespace vdbsynth {
 namespace {
 
 constexpr int kMostMargin = 2;               // [voxels]
-constexpr int kOccupancy = 8;                // side of what is marked as taken at once
+constexpr int kOccupancy = 2;                // side of what is marked as taken at once
 constexpr std::size_t kGroupsLookedAt = 64;  // as many as a word has bits
 
 std::int8_t nearValue(float distance) {

@@ -11,7 +11,7 @@
 namespace vdbsynth {
 namespace {
 
-constexpr int kAbove = 4;  // times what a seam across an axis costs along which everything keeps its place
+constexpr int kAbove = 16;  // times what a seam across an axis costs along which everything keeps its place
 constexpr int kTooLong = 1500;  // [64ths of a voxel] what each cell costs that makes a piece too long
 // [64ths of a voxel] of a cell that an exemplar has not, in its end
 constexpr int kBeyond = 2 * NearField::kFar * kSeamCell * kSeamCell * kSeamCell;

@@ -16,7 +16,7 @@ namespace {
 using Fields = std::vector<std::shared_ptr<const BrickField>>;
 using Pass = SynthesisPass;
 
-constexpr int kRoundsFirst = 12, kRoundsBetween = 6, kRoundsLast = 4;
+constexpr int kRoundsFirst = 12, kRoundsBetween = 6, kRoundsLast = 2;
 constexpr int kOverlap = 4;        // patches over a sample along each axis
 constexpr int kRoundsOfCuts = 3;   // after the last, of runs that grew too long
 constexpr int kCoarsestSide = 32;  // [samples] an exemplar of less is not halved

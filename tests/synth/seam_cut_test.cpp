@@ -80,7 +80,7 @@ std::int64_t energy(const Scene& scene, const BrickField& field, const std::vect
             Index3 other = cell;
             if (++other[axis] >= cells.count()[axis]) continue;
             const Index3 theirs = shifts[cells.number(other)];
-            sum += (axis == 2 ? 4 : 1) * (apart(cell, shifts[i], theirs) + apart(other, shifts[i], theirs));
+            sum += (axis == 2 ? 16 : 1) * (apart(cell, shifts[i], theirs) + apart(other, shifts[i], theirs));
         }
     }
     return sum;

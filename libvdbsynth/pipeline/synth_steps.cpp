@@ -210,7 +210,8 @@ void planDraft(SynthPlan& plan, const RunContext& ctx) {
 
 void requireRoom(const RunContext& ctx, const SourceMap& map, const LevelSets& exemplars) {
     // The surface grows with the volume. An active voxel of the result costs its share of field, vote, mesh
-    // and distances; one of an exemplar's widened band its share of field, pyramids and index.
+    // and distances; one of an exemplar's widened band its share of field, pyramids and index. Seams are cut
+    // with four bytes for each voxel of the result.
     double active = 0, volume = 0, variants = 0;
     for (std::size_t e = 0; e < exemplars.size(); ++e) {
         active += double(exemplars[e]->grid->activeVoxelCount());
@@ -220,7 +221,7 @@ void requireRoom(const RunContext& ctx, const SourceMap& map, const LevelSets& e
         variants += double(variant.size.x) * double(variant.size.y) * double(variant.size.z);
     const double growth = double(map.targetBox.volume()) / std::max(volume, 1.0);
     const double bytes = growth * active * 60 + active * double(map.band) / kHalfWidth * 40 + variants * 16 +
-                         double(map.targetBox.volume()) * (8.0 / 512 + 0.5);
+                         double(map.targetBox.volume()) * (8.0 / 512 + 4.5);
     requireMemory(ctx, bytes,
                   "a result of " + std::to_string(map.targetBox.size().x) + " x " +
                       std::to_string(map.targetBox.size().y) + " x " +

@@ -88,7 +88,6 @@ SeamCells::SeamCells(const PatchMap& map) {
     mBlocks.target = map.target;
     mBlocks.stride = kSeamCell;
     mBlocks.block = kSeamCell + 2 * margin;
-    mBlocks.allocate();
     mCount = mBlocks.lattice();
     mPatches = map.lattice();
     for (int i = 0; i < map.block; ++i) mWeights.push_back(voteWeight(map.block, i));

@@ -54,13 +54,16 @@ public:
     explicit SeamCells(const PatchMap& map);
 
     const Index3& count() const { return mCount; }
+    std::size_t total() const {
+        return std::size_t(mCount.x) * std::size_t(mCount.y) * std::size_t(mCount.z);
+    }
     std::size_t number(const Index3& cell) const { return numberIn(mCount, cell); }
     /// Where a cell begins in the target, without its margin.
     Index3 cornerOf(const Index3& cell) const {
         return {mCorners[0][std::size_t(cell.x)], mCorners[1][std::size_t(cell.y)],
                 mCorners[2][std::size_t(cell.z)]};
     }
-    /// A map with a block for each cell and its margin, still without sources.
+    /// A map with a block for each cell and its margin, still without arrays.
     const PatchMap& blocks() const { return mBlocks; }
     /// The cells that, with their margins, lie inside a patch; may be empty.
     IndexBox inside(const Index3& patch) const;

@@ -113,6 +113,7 @@ public:
             stage.advance(group.size());
         }
         PatchMap result = mCells.blocks();
+        result.allocate();
         forEachCell([&](const Index3& cell) {
             const std::size_t i = mCells.number(cell);
             const Shift& shift = mShifts.all[std::size_t(mTaken[i])];
@@ -125,7 +126,7 @@ public:
 private:
     // At first every cell copies by the patch that has most say in its middle.
     void takeStrongest() {
-        mTaken.resize(mCells.blocks().source.size());
+        mTaken.resize(mCells.total());
         forEachCell([&](const Index3& cell) {
             mTaken[mCells.number(cell)] = mShifts.ofPatch[mCells.strongestPatch(mMap, cell)];
         });

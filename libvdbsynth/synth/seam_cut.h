@@ -21,7 +21,7 @@ namespace vdbsynth {
 /// so
 ///         that a seam is a blend over that margin. Sources are places of `map`'s patches or lie inside them
 /// @throw Error Cancelled
-/// @par Cost    O(cells * shifts that cover one); memory 5 bytes a voxel of target and a byte of exemplar
+/// @par Cost    O(cells * shifts that cover one); memory 4 bytes a voxel of target and a byte of exemplar
 /// @par Repeats same bits for any number of threads
 PatchMap cutSeams(const PatchLevel& level, const PatchMap& map, const BrickField& field,
                   const RunContext& ctx = {});

@@ -58,7 +58,7 @@ TEST_CASE("SeamCells: every cell lies inside a patch, and cells and patches know
             const PatchMap map = mapFor(target, block);
             const SeamCells cells(map);
             REQUIRE(cells.blocks().block >= 4);
-            std::vector<std::vector<Index3>> over(cells.blocks().source.size());
+            std::vector<std::vector<Index3>> over(cells.total());
             forEachCell(map.lattice(), [&](const Index3& patch) {
                 const IndexBox box = cells.inside(patch);
                 forEachCell(cells.count(), [&](const Index3& cell) {

@@ -179,9 +179,10 @@ std::vector<GridPtr> sourceMapGrids(const SourceMap& map, const openvdb::FloatGr
                 weightAccessor.setValueOn(openvdb::Coord(a, b, c),
                                           map.patches.weight.empty() ? 1.f : map.patches.weight[at]);
             }
-    putText(*votes, "format", "1");
+    putText(*votes, "format", "2");
     putText(*votes, "patch", std::to_string(map.patches.block));
     putText(*votes, "stride", std::to_string(map.patches.stride));
+    putText(*votes, "matched", std::to_string(map.matched));
     putText(*votes, "overhang",
             std::to_string(map.patches.overhang.x) + "," + std::to_string(map.patches.overhang.y) + "," +
                 std::to_string(map.patches.overhang.z));
@@ -250,11 +251,12 @@ SourceMap readSourceMap(const std::string& path, const RunContext& ctx) {
     SourceMap map;
     const std::string kernel = getText(path, *votes, "kernel");
     map.patches.vote = kernel == kFirstKernel ? PatchVote::First : PatchVote::Blend;
-    if ((kernel != kVoteKernel && kernel != kFirstKernel) || getText(path, *votes, "format") != "1")
+    if ((kernel != kVoteKernel && kernel != kFirstKernel) || getText(path, *votes, "format") != "2")
         throw Error(ErrorCode::BadData,
                     path + ": its source map was written by another version of vdb_synth; make it again");
     map.patches.block = getWhole(path, *votes, "patch", 1, 65536);
     map.patches.stride = getWhole(path, *votes, "stride", 1, map.patches.block);
+    map.matched = getWhole(path, *votes, "matched", 1, 65536);
     Index3& overhang = map.patches.overhang;
     const std::string overhangText = getText(path, *votes, "overhang");
     if (std::sscanf(overhangText.c_str(), "%d,%d,%d", &overhang.x, &overhang.y, &overhang.z) != 3 ||

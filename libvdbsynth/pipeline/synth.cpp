@@ -179,6 +179,7 @@ SynthResult synthesize(const LevelSets& exemplars, const SynthOptions& options, 
                                          : synthesizeBlocks(held.variants, plan.block, ctx);
     SynthResult result;
     plan.map.patches = std::move(synthesis.map);
+    plan.map.matched = synthesis.stats.block * (plan.map.draft ? 2 : 1);
     if (plan.map.draft) {
         plan.map.patches = plan.map.patches.scaled(2, plan.map.targetBox.size());
         held.exemplars = gatherForVote(plan.map, exemplars, ctx);
@@ -188,7 +189,7 @@ SynthResult synthesize(const LevelSets& exemplars, const SynthOptions& options, 
     result.model.carried = carryThroughMap(plan.map, exemplars, *result.model.grid, options.carried, ctx);
     result.map = std::move(plan.map);
     result.stats = synthesis.stats;
-    result.stats.block = result.map.patches.block;
+    result.stats.block = result.map.matched;
     return result;
 }
 
@@ -270,6 +271,7 @@ SourceMap finerMap(const SourceMap& map, int factor) {
     scaled.targetDomain = finer(map.targetDomain);
     scaled.band = map.band * float(factor);
     scaled.patches = map.patches.scaled(factor, scaled.targetBox.size());
+    scaled.matched = map.matched * factor;
     scaled.draft = false;  // what the finer exemplar is for
     return scaled;
 }

@@ -58,6 +58,9 @@ struct SourceMap {
     std::vector<ExemplarVariant> variants;  ///< what `patches.exemplar` counts; empty: the exemplars
     IndexBox targetBox;                     ///< target's working box
     IndexBox targetDomain;
+    /// [voxels] side of the blocks that were matched; those that vote may be smaller. Crumbs, which have no
+    /// place in a block, are told by it.
+    int matched = 16;
     bool draft = false;  ///< matched at half the resolution, read without a widened band, normalised
     float band = 8;      ///< [voxels], distances were clamped there
     float halfWidth = kHalfWidth;

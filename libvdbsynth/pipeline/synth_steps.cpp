@@ -73,7 +73,7 @@ BrickField clipped(const SourceMap& map, BrickField field, const RunContext& ctx
 // Half a block a side at most, and no larger than what a scaled exemplar has.
 void removeCrumbsOf(const SourceMap& map, const ExemplarFields& exemplars, BrickField& field,
                     const RunContext& ctx) {
-    const std::uint64_t half = std::uint64_t(map.patches.block / 2);
+    const std::uint64_t half = std::uint64_t(map.matched / 2);
     double least = 1;
     for (const ExemplarVariant& variant : map.variants) least = std::min(least, variant.scale);
     Stage stage(ctx, "removing crumbs", 2);

@@ -1,7 +1,7 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/synth/block_synthesis.h"
-#include "libvdbsynth/synth/exemplar_variant.h"
+#include "libvdbsynth/map/exemplar_variant.h"
 #include "libvdbsynth/vdb/level_set.h"
 
 #include <array>

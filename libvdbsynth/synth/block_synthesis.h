@@ -1,7 +1,7 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/grid/brick_field.h"
-#include "libvdbsynth/grid/patch_map.h"
+#include "libvdbsynth/map/patch_map.h"
 
 #include <array>
 #include <cstdint>
@@ -98,7 +98,7 @@ void validateSynthesis(const std::vector<Index3>& exemplars, const BlockSynthesi
 /// where the paper pads with random samples); later ones also the upsampled result of the pass before. Blocks
 /// on one diagonal plane of the lattice do not depend on each other and are matched in parallel; the result
 /// is that of the raster order. Where the paper copies octants and smooths the mesh, the result here is the
-/// vote of all blocks that cover a sample (grid/patch_map.h): neighbours were matched to agree where they
+/// vote of all blocks that cover a sample (map/patch_map.h): neighbours were matched to agree where they
 /// overlap, so their weighted mean has no seams. The first block of the first pass is drawn from ctx.seed;
 /// equal costs go to the lowest position.
 ///

@@ -9,8 +9,9 @@ import sys
 BELOW = {}
 for room, direct in [
     ("base", []), ("math", ["base"]), ("geometry", ["math"]), ("grid", ["geometry"]),
-    ("io", ["geometry", "grid"]), ("vdb", ["io"]), ("procedural", ["grid"]), ("surface", ["grid"]), ("search", ["grid", "io"]),
-    ("synth", ["search", "grid"]), ("analogy", ["search", "surface", "grid"]), ("measure", ["synth"]), ("pipeline", ["measure", "synth", "analogy", "procedural", "vdb", "io"]), ("tools", ["pipeline"]),
+    ("map", ["grid"]),
+    ("io", ["geometry", "grid"]), ("vdb", ["io", "map"]), ("procedural", ["grid"]), ("surface", ["grid"]), ("search", ["grid", "io"]),
+    ("synth", ["search", "map"]), ("analogy", ["search", "surface", "map"]), ("measure", ["synth"]), ("pipeline", ["measure", "synth", "analogy", "procedural", "vdb", "io"]), ("tools", ["pipeline"]),
 ]:
     BELOW[room] = {room}.union(*[BELOW[d] for d in direct]) if direct else {room}
 

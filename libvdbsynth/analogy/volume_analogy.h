@@ -1,4 +1,6 @@
 #pragma once
+#include "libvdbsynth/map/source_gather.h"
+#include "libvdbsynth/map/source_map.h"
 #include "libvdbsynth/surface/frame_field.h"
 
 #include <cstdint>
@@ -46,15 +48,12 @@ struct AnalogyLevelStats {
 
 inline constexpr std::size_t kProbed = 2000;
 
-/// A voxel of the target and the one it was copied from.
-struct AnalogySource {
-    Index3 to, from;
-    std::int32_t pair = 0;
-};
-
+/// Where everything in a result comes from; readAnalogy makes the result of it.
 struct VolumeAnalogyResult {
-    BrickField distance;  ///< [voxels] its zero level is the result; no valid distance elsewhere
-    std::vector<AnalogySource> sources;
+    /// Of every voxel that was synthesised, in the target's voxels: the place in its pair, in that pair's
+    /// voxels, moved along the normal to the target's own depth, and the rotation between their frames.
+    ElementSources sources;
+    std::vector<DepthRun> depths;           ///< what all other voxels are
     std::vector<AnalogyLevelStats> levels;  ///< coarsest first
 };
 
@@ -76,7 +75,8 @@ inline constexpr int kRoom = 36;  ///< [voxels of the level]
 ///    a wave runs on all threads and the result does not depend on their number;
 ///  - candidates that go on from what neighbours copied come first, and bound the search for the rest;
 ///  - the value copied is read where the source would lie if its depth were exactly the target's, and after
-///    a level's last sweep each voxel takes the mean of what its neighbours' sources say about its place.
+///    a level's last sweep each voxel takes the mean of what its neighbours' sources say about its place; at
+///    the finest level that is readAnalogy's.
 /// @param target   box begins at 0, distances [voxels], wide enough for what is added
 /// @throw Error InvalidOption, Unusable (a pair too small for the levels), Cancelled
 /// @par Cost    O(voxels near the surface * (samples of a feature + candidates)) a sweep
@@ -84,5 +84,19 @@ inline constexpr int kRoom = 36;  ///< [voxels of the level]
 VolumeAnalogyResult makeAnalogy(const std::vector<AnalogyPair>& pairs, const BrickField& target,
                                 const FrameField& frames, const VolumeAnalogyOptions& options,
                                 const RunContext& ctx = {});
+
+inline constexpr float kAnalogyFar = 6;  ///< [voxels] of what is not near the result's surface
+
+/// The textured distance field that sources make over a target: gatherThroughSources where there are any,
+/// kAnalogyFar times the map's factor inside or outside by depth elsewhere. Its zero level is the result; it
+/// is no valid distance away from it.
+/// @param sources    positions as `textured` places them
+/// @param mapBox     of the sources, size of the target over factor
+/// @param textured   of each pair, see gatherThroughSources
+/// @param target     plain distances [its voxels], box begins at 0
+/// @param factor     voxels of the target along one of the map's
+BrickField readAnalogy(const ElementSources& sources, const std::vector<DepthRun>& depths,
+                       const IndexBox& mapBox, const std::vector<ExemplarSamples>& textured,
+                       const BrickField& target, int factor = 1, const RunContext& ctx = {});
 
 }  // namespace vdbsynth

@@ -11,7 +11,7 @@ namespace vdbsynth {
 /// One place of an exemplar that an element of a result was copied from.
 struct Source {
     std::int32_t exemplar = 0;  ///< its number among the map's exemplars
-    Vec3f position;             ///< [voxels] index space of the exemplar, between voxels too
+    Vec3d position;             ///< [voxels] index space of the exemplar, between voxels too
     Vec3f rotation;             ///< [radians] axis times angle, from the exemplar to the result
     float scale = 1;            ///< size of a feature in the result over its size in the exemplar, each in
                                 ///< its own voxels

@@ -75,9 +75,9 @@ void requireSoundElements(const SourceMap& map) {
         for (const Source& source : map.elements[i]) {
             require(source.exemplar >= 0 && std::size_t(source.exemplar) < map.exemplars.size(),
                     "names an exemplar that it does not have");
-            require(map.exemplars[std::size_t(source.exemplar)].box.expanded(2).contains(
-                        nearestVoxel(source)),
-                    "points outside the exemplar");
+            require(
+                map.exemplars[std::size_t(source.exemplar)].box.expanded(2).contains(nearestVoxel(source)),
+                "points outside the exemplar");
             require(length(source.rotation) <= 100 && source.scale >= 0.2f && source.scale <= 5,
                     "has a rotation or a scale out of range");
         }
@@ -126,6 +126,25 @@ std::vector<Source> votingSources(const SourceMap& map, const Index3& voxel) {
     return sources;
 }
 
+Index3 coarserVoxel(const Index3& voxel, int factor) {
+    const int shift = -((factor - 1) / 2);
+    Index3 coarse;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int from = voxel[axis] - shift;
+        coarse[axis] = from >= 0 ? from / factor : -((-from + factor - 1) / factor);
+    }
+    return coarse;
+}
+
+Source finerSource(const SourceMap& map, std::size_t element, const Index3& voxel) {
+    Source source = *map.elements.strongest(element);
+    const Index3 middle = map.elements.voxels()[element] * map.finer, by = voxel - middle;
+    const Vec3d moved =
+        transformed(turnBy(-cast<double>(source.rotation)), {double(by.x), double(by.y), double(by.z)});
+    source.position = source.position * double(map.finer) + moved * (1 / double(source.scale));
+    return source;
+}
+
 IndexBox finerBox(const IndexBox& box, int factor) {
     const int shift = -((factor - 1) / 2);
     const Index3 by{shift, shift, shift};
@@ -149,7 +168,9 @@ SourceMap finerMap(const SourceMap& map, int factor) {
     scaled.targetBox = finerBox(map.targetBox, factor);
     scaled.targetDomain = finerBox(map.targetDomain, factor);
     scaled.band = map.band * float(factor);
-    if (map.method != MapMethod::Analogy)
+    if (map.method == MapMethod::Analogy)
+        scaled.finer = map.finer * factor;
+    else
         scaled.patches = map.patches.scaled(factor, scaled.targetBox.size());
     scaled.matched = map.matched * factor;
     scaled.draft = false;  // what the finer exemplar is for

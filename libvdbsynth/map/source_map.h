@@ -22,8 +22,9 @@ enum class MapMethod {
 struct MappedExemplar {
     IndexBox box;  ///< working box [its index space]: its domain, grown where a method needs room around it
     IndexBox domain;
-    std::string hash;           ///< levelSetHash
-    std::array<bool, 6> cut{};  ///< analogies: faces of the box where the solid continues beyond
+    std::string hash;              ///< levelSetHash
+    std::array<bool, 6> cut{};     ///< fills and analogies: faces of the box where the solid continues beyond
+    Affine transform = kIdentity;  ///< from its index space to the world, when the map was made
 };
 
 /// From this distance to the plain surface on [whole voxels], up to the next run, voxels without a source are
@@ -59,8 +60,10 @@ struct MappedHole {
 /// the sources. Plain values: a copy stands for itself.
 struct SourceMap {
     MapMethod method = MapMethod::Synthesis;
-    PatchMap patches;                       ///< on the target's working box; of synthesis and fills
-    ElementSources elements;                ///< of analogies
+    PatchMap patches;         ///< on the target's working box; of synthesis and fills
+    ElementSources elements;  ///< of analogies
+    int finer = 1;  ///< voxels of the target along one that `elements` counts; theirs and the exemplars'
+                    ///< coordinates there are those of the map as it was made
     std::vector<MappedExemplar> exemplars;  ///< of an analogy the textured models
     std::vector<ExemplarVariant> variants;  ///< what `patches.exemplar` counts; empty: the exemplars
     IndexBox targetBox;                     ///< target's working box
@@ -98,6 +101,12 @@ struct MappedVoxel {
     Index3 to;
     Source from;
 };
+
+/// The source of a voxel of a map whose elements count coarser ones: moved on from the middle of the one it
+/// lies in, in the finer exemplar's coordinates.
+Source finerSource(const SourceMap& map, std::size_t element, const Index3& voxel);
+/// The voxel of the map as it was made that a finer one lies in.
+Index3 coarserVoxel(const Index3& voxel, int factor);
 
 /// The exemplar's voxel nearest to a source.
 Index3 nearestVoxel(const Source& source);

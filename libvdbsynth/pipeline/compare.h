@@ -1,5 +1,6 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/map/source_map.h"
 #include "libvdbsynth/measure/novelty.h"
 #include "libvdbsynth/measure/patch_distribution.h"
 #include "libvdbsynth/measure/statistics.h"
@@ -28,8 +29,8 @@ struct CompareOptions {
 struct CompareInput {
     std::string name;
     LevelSet model;
-    GridPtr source;    ///< Vec3I grid of a source map, in the model's voxels; null: none
-    GridPtr exemplar;  ///< Int32 grid of a source map; null: all are of the reference
+    /// Of a source map, in the model's voxels; exemplar 0 is the reference. Empty: none is known.
+    std::optional<std::vector<MappedVoxel>> sources;
 };
 
 /// Gives the input the source map among some grids. @return false if there is none in the model's voxels

@@ -1,5 +1,6 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/map/source_map.h"
 #include "libvdbsynth/synth/block_synthesis.h"
 #include "libvdbsynth/vdb/level_set.h"
 
@@ -14,9 +15,7 @@ struct FillOptions {
 
 struct FillResult {
     LevelSet model;
-    /// `source` Vec3I and `exemplar` Int32 on the band inside the hole: the voxel of the exemplar that had
-    /// the most say. There is no map to repeat: the rest of the model is not in it.
-    std::vector<GridPtr> sources;
+    SourceMap map;  ///< what repeatMap (repeat.h) reads the result through; has the hole
     BlockSynthesisStats stats;
 };
 

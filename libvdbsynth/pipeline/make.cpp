@@ -3,7 +3,7 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/pipeline/analogy.h"
-#include "libvdbsynth/pipeline/field_model.h"
+#include "libvdbsynth/pipeline/field_model_steps.h"
 #include "libvdbsynth/procedural/analogy_pair.h"
 
 #include <openvdb/openvdb.h>

@@ -6,7 +6,7 @@
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/point_file.h"
 #include "libvdbsynth/io/raster_file.h"
-#include "libvdbsynth/pipeline/field_model.h"
+#include "libvdbsynth/pipeline/field_model_steps.h"
 #include "libvdbsynth/vdb/mesh_conversion.h"
 #include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/vdb_file.h"

@@ -52,6 +52,13 @@ double voxelSizeOf(const openvdb::FloatGrid& grid) {
     return grid.voxelSize()[0];
 }
 
+Affine transformOf(const openvdb::FloatGrid& grid) {
+    const openvdb::Mat4d matrix = grid.transform().baseMap()->getAffineMap()->getMat4();
+    Affine transform;
+    std::copy_n(matrix.asPointer(), transform.size(), transform.begin());
+    return transform;
+}
+
 IndexBox solidBox(const openvdb::FloatGrid& grid, const std::string& what) {
     openvdb::CoordBBox box;
     for (const Leaf* leaf : leavesOf(grid))

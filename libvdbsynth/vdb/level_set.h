@@ -1,6 +1,7 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/geometry/mesh.h"
+#include "libvdbsynth/math/affine.h"
 #include "libvdbsynth/math/index_box.h"
 #include "libvdbsynth/math/vec3.h"
 #include "libvdbsynth/vdb/vdb_fwd.h"
@@ -32,6 +33,8 @@ bool parseBox(const std::string& text, IndexBox& box);
 
 /// [world] length of a voxel side.
 double voxelSizeOf(const openvdb::FloatGrid& grid);
+/// From index space to the world.
+Affine transformOf(const openvdb::FloatGrid& grid);
 /// Box of the solid: the voxels with a negative value.
 /// @throw Error EmptyInput "WHAT has no inside ..."
 IndexBox solidBox(const openvdb::FloatGrid& grid, const std::string& what);

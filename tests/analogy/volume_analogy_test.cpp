@@ -39,6 +39,12 @@ VolumeAnalogyOptions levels(int count) {
     return options;
 }
 
+// The result's field.
+BrickField read(const VolumeAnalogyResult& made, const std::shared_ptr<const BrickField>& textured,
+                const BrickField& target) {
+    return readAnalogy(made.sources, made.depths, target.box(), {{textured, {0, 0, 0}, 1}}, target);
+}
+
 }  // namespace
 
 TEST_CASE("makeAnalogy: dilation of a ball learnt from another is an offset", "[analogy]") {
@@ -47,6 +53,7 @@ TEST_CASE("makeAnalogy: dilation of a ball learnt from another is an offset", "[
     const FrameField from = framesAlong(plain, {0, 0, 1}), to = framesAlong(target, {0, 0, 1});
     const VolumeAnalogyResult made =
         makeAnalogy({{plain, textured, &from, plain->box()}}, *target, to, levels(2));
+    const BrickField distance = read(made, textured, *target);
     double sum = 0;
     int count = 0;
     for (int i = 0; i < 500; ++i) {
@@ -55,7 +62,7 @@ TEST_CASE("makeAnalogy: dilation of a ball learnt from another is an offset", "[
             normalized(Vec3f{float(random.normal()), float(random.normal()), float(random.normal())});
         // Where the ray from the middle leaves the solid.
         float r = 6;
-        while (r < 20 && sampleTrilinear(made.distance, Vec3f{21.5f, 21.5f, 21.5f} + out * r) < 0) r += 0.05f;
+        while (r < 20 && sampleTrilinear(distance, Vec3f{21.5f, 21.5f, 21.5f} + out * r) < 0) r += 0.05f;
         sum += double(r) - 9;
         ++count;
     }
@@ -65,12 +72,13 @@ TEST_CASE("makeAnalogy: dilation of a ball learnt from another is an offset", "[
 TEST_CASE("makeAnalogy: grooves follow the target's direction, at the pair's spacing", "[analogy]") {
     const Setting s = grooves();
     const VolumeAnalogyResult made = makeAnalogy({s.pair()}, *s.target, s.targetFrames, levels(1));
+    const BrickField distance = read(made, s.textured, *s.target);
     // Heights differ across x, the grooves' other axis here, and hardly along y.
     std::vector<std::vector<float>> height(40, std::vector<float>(40));
     for (int x = 0; x < 40; ++x)
         for (int y = 0; y < 40; ++y) {
             float z = 8;
-            while (z < 30 && sampleTrilinear(made.distance, {float(x), float(y), z}) < 0) z += 0.1f;
+            while (z < 30 && sampleTrilinear(distance, {float(x), float(y), z}) < 0) z += 0.1f;
             height[std::size_t(x)][std::size_t(y)] = z;
         }
     double across = 0, along = 0;
@@ -85,9 +93,10 @@ TEST_CASE("makeAnalogy: grooves follow the target's direction, at the pair's spa
     CHECK(valleys >= 3);
     CHECK(valleys <= 5);
     REQUIRE(made.sources.size() > 1000);
-    for (const AnalogySource& source : made.sources) {
-        CHECK(s.plain->box().contains(source.from));
-        CHECK(source.pair == 0);
+    for (std::size_t i = 0; i < made.sources.size(); ++i) {
+        const Source& source = *made.sources.strongest(i);
+        CHECK(s.plain->box().contains(nearestVoxel(source)));
+        CHECK(source.exemplar == 0);
     }
 }
 
@@ -98,7 +107,8 @@ TEST_CASE("makeAnalogy: the same bits for any threads, other bits for another se
     four.threads = 4;
     other.seed = 7;
     const auto made = [&](const RunContext& ctx) {
-        return test::samplesOf(makeAnalogy({s.pair()}, *s.target, s.targetFrames, levels(2), ctx).distance);
+        return test::samplesOf(
+            read(makeAnalogy({s.pair()}, *s.target, s.targetFrames, levels(2), ctx), s.textured, *s.target));
     };
     const std::vector<float> a = made(one);
     CHECK(a == made(four));
@@ -175,7 +185,8 @@ TEST_CASE("makeAnalogy: bent neighbourhoods, same bits for any number of threads
     one.threads = 1;
     three.threads = 3;
     const auto made = [&](const VolumeAnalogyOptions& options, const RunContext& ctx) {
-        return test::samplesOf(makeAnalogy({s.pair()}, *s.target, s.targetFrames, options, ctx).distance);
+        return test::samplesOf(
+            read(makeAnalogy({s.pair()}, *s.target, s.targetFrames, options, ctx), s.textured, *s.target));
     };
     CHECK(made(bent, one) == made(bent, three));
 }

@@ -209,8 +209,7 @@ void analogy(Run& run) {
         pairs.push_back({&models.pairs[i], &models.pairs[i + 1]});
     const AnalogyResult result = makeAnalogyModel(pairs, models.target, options, run.context);
     if (result.directions) outputs.extraGrids.push_back(result.directions);
-    writeWithMap(run, result.model, place.path.empty() ? std::vector<GridPtr>{} : result.sources, place,
-                 paths, outputs);
+    writeWithMap(run, result.model, result.map, place, paths, outputs);
     report(run, result);
     run.finish();
 }

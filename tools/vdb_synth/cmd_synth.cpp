@@ -151,7 +151,7 @@ void fill(Run& run) {
         exemplar = run.load(arguments.inputs[0], modelOptions);
     }
     const FillResult result = fillHoles(partial, hole, exemplar ? &*exemplar : nullptr, options, run.context);
-    writeWithMap(run, result.model, result.sources, place, paths, outputs);
+    writeWithMap(run, result.model, result.map, place, paths, outputs);
     run.count("block", result.stats.block);
     run.count("levels", result.stats.levels);
     run.count("matches", result.stats.matches);
@@ -235,9 +235,7 @@ void synth(Run& run) {
     if (run.arguments.has("exemplar-mask")) options.exemplarMask = run.loadMask("exemplar-mask");
     loadControls(run, voxelSizeOf(*exemplars.front().grid), options);
     const SynthResult result = synthesize(pointersTo(exemplars), options, run.context);
-    std::vector<GridPtr> map;
-    if (!place.path.empty()) map = sourceMapGrids(result.map, *result.model.grid, run.context);
-    writeWithMap(run, result.model, map, place, paths, outputs);
+    writeWithMap(run, result.model, result.map, place, paths, outputs);
     run.count("block", result.stats.block);
     run.count("levels", result.stats.levels);
     run.count("matches", result.stats.matches);

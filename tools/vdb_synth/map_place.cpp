@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
+#include "libvdbsynth/vdb/source_map_grids.h"
 
 #include <algorithm>
 
@@ -34,12 +35,19 @@ MapPlace mapPlaceOf(const Arguments& arguments, const std::vector<std::string>& 
     return place;
 }
 
-void writeWithMap(Run& run, const LevelSet& model, const std::vector<GridPtr>& map, const MapPlace& place,
+void writeWithMap(Run& run, const LevelSet& model, const SourceMap& map, const MapPlace& place,
                   const std::vector<std::string>& paths, ModelOutputOptions outputs) {
     outputs.metadata = run.metadata();
-    if (place.inside) outputs.extraGrids.insert(outputs.extraGrids.end(), map.begin(), map.end());
+    std::vector<GridPtr> grids;
+    if (!place.path.empty()) {
+        const MapTypes types =
+            run.arguments.text("map-types") == "float" ? MapTypes::Float : MapTypes::Integer;
+        grids = sourceMapGrids(map, *model.grid, run.context, types);
+    }
+    if (place.inside) outputs.extraGrids.insert(outputs.extraGrids.end(), grids.begin(), grids.end());
     writeModel(model, paths, outputs, run.outputs(), run.context);
-    if (!place.path.empty() && !place.inside) writeVdb(run.outputs().add(place.path), map, outputs.metadata);
+    if (!place.path.empty() && !place.inside)
+        writeVdb(run.outputs().add(place.path), grids, outputs.metadata);
 }
 
 }  // namespace vdbsynth::cli

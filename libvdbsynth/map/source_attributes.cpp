@@ -38,6 +38,12 @@ Vec3d voxelOf(const Source& source) {
     return {double(voxel.x), double(voxel.y), double(voxel.z)};
 }
 
+// The largest coordinate, not a number if any is none.
+double farthest(const Vec3d& place) {
+    if (!std::isfinite(dot(place, place))) return NAN;
+    return std::max({std::abs(place.x), std::abs(place.y), std::abs(place.z)});
+}
+
 const Attribute* columnsOf(const Attributes& attributes, const std::string& name, std::size_t width,
                            std::size_t rows) {
     const Attribute* attribute = findAttribute(attributes, name);
@@ -62,7 +68,7 @@ Attributes sourceAttributes(const ElementSources& sources) {
                   "point, vertex or corner; a map of voxels is written as grids");
     for (std::size_t i = 0; i < sources.size(); ++i) {
         const Source* source = sources.strongest(i);
-        if (source && length(voxelOf(*source)) > kExactFloat)
+        if (source && farthest(voxelOf(*source)) > kExactFloat)
             throw Error(ErrorCode::Unusable,
                         "element " + std::to_string(i) +
                             " of the source map was copied from beyond 2^24 voxels, which attributes cannot "
@@ -109,7 +115,7 @@ ElementSources sourcesFromAttributes(const Attributes& attributes, ElementKind k
         source.scale = float(rowOf(scale, i, 1).x);
         source.weight = float(rowOf(weight, i, 1).x);
         if (!(number >= 0 && number < kExactFloat && number == std::floor(number)) ||
-            !(length(place) <= 2 * kExactFloat) || !(length(by) <= 2) || !(length(turn) <= 100) ||
+            !(farthest(place) <= kExactFloat) || !(length(by) <= 2) || !(length(turn) <= 100) ||
             !(source.scale > 0 && source.scale < 1e6f) || !(source.weight > 0 && source.weight < 1e6f))
             throw Error(ErrorCode::BadData,
                         "element " + std::to_string(i) + " of the source map has numbers that are no source");

@@ -155,15 +155,8 @@ GridPtr directionGrid(const FrameField& frames, const FieldPlace& place, const I
     return grid;
 }
 
-}  // namespace
-
-AnalogyResult makeAnalogyModel(const std::vector<AnalogyModelPair>& pairs, const LevelSet& target,
-                               const AnalogyOptions& options, const RunContext& ctx) {
-    requireOption(options.scale >= 0.25 && options.scale <= 4, "scale", std::to_string(options.scale),
-                  "from 0.25 to 4");
-    requireOption(options.strength >= 0 && options.strength <= 1, "strength",
-                  std::to_string(options.strength), "from 0 to 1");
-    const ThreadLimit limit(ctx);
+AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const LevelSet& target,
+                          const AnalogyOptions& options, const RunContext& ctx) {
     AnalogyResult result;
     std::vector<PairFields> fields;
     for (const AnalogyModelPair& pair : pairs) {
@@ -225,6 +218,17 @@ AnalogyResult makeAnalogyModel(const std::vector<AnalogyModelPair>& pairs, const
         result.singularities.push_back(place.toWorld(cast<double>(p)));
     result.cut = frames.sweep().cut;
     return result;
+}
+
+}  // namespace
+
+AnalogyResult makeAnalogyModel(const std::vector<AnalogyModelPair>& pairs, const LevelSet& target,
+                               const AnalogyOptions& options, const RunContext& ctx) {
+    requireOption(options.scale >= 0.25 && options.scale <= 4, "scale", std::to_string(options.scale),
+                  "from 0.25 to 4");
+    requireOption(options.strength >= 0 && options.strength <= 1, "strength",
+                  std::to_string(options.strength), "from 0 to 1");
+    return withThreads(ctx, [&] { return madeAnalogy(pairs, target, options, ctx); });
 }
 
 }  // namespace vdbsynth

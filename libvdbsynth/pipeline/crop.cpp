@@ -39,10 +39,7 @@ GridPtr clipped(const GridPtr& grid, const openvdb::FloatGrid& model, const Inde
     return result;
 }
 
-}  // namespace
-
-LevelSet cropModel(const LevelSet& model, const IndexBox& box, const RunContext& ctx) {
-    const ThreadLimit limit(ctx);
+LevelSet cropped(const LevelSet& model, const IndexBox& box, const RunContext& ctx) {
     requireMemory(ctx, double(box.volume()) * 8.0 / 512, "a box of " + boxText(box), "use a smaller --box");
     const double voxel = voxelSizeOf(*model.grid);
     const float band = std::max(1.5f, std::min(kHalfWidth, float(halfWidthOf(*model.grid))));
@@ -62,6 +59,12 @@ LevelSet cropModel(const LevelSet& model, const IndexBox& box, const RunContext&
     for (const GridPtr& carried : model.carried)
         result.carried.push_back(clipped(carried, *model.grid, box, ctx));
     return result;
+}
+
+}  // namespace
+
+LevelSet cropModel(const LevelSet& model, const IndexBox& box, const RunContext& ctx) {
+    return withThreads(ctx, [&] { return cropped(model, box, ctx); });
 }
 
 }  // namespace vdbsynth

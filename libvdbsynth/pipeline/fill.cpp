@@ -273,9 +273,10 @@ LevelSet holesAtOpenEdges(const LevelSet& partial, const RunContext& ctx) {
     });
 }
 
-FillResult fillHoles(const LevelSet& partial, const LevelSet& hole, const LevelSet* exemplar,
-                     const FillOptions& options, const RunContext& ctx) {
-    const ThreadLimit limit(ctx);
+namespace {
+
+FillResult filledHoles(const LevelSet& partial, const LevelSet& hole, const LevelSet* exemplar,
+                       const FillOptions& options, const RunContext& ctx) {
     const openvdb::FloatGrid::Ptr holeGrid = inVoxelsOf(*partial.grid, hole);
     const IndexBox holeBox = solidBox(*holeGrid, "the hole");
     const LevelSet& from = exemplar ? *exemplar : partial;
@@ -337,6 +338,13 @@ FillResult fillHoles(const LevelSet& partial, const LevelSet& hole, const LevelS
     if (!partial.domainRecorded) result.model.domain = solidBox(*result.model.grid, "the filled model");
     stampLevelSet(result.model);
     return result;
+}
+
+}  // namespace
+
+FillResult fillHoles(const LevelSet& partial, const LevelSet& hole, const LevelSet* exemplar,
+                     const FillOptions& options, const RunContext& ctx) {
+    return withThreads(ctx, [&] { return filledHoles(partial, hole, exemplar, options, ctx); });
 }
 
 }  // namespace vdbsynth

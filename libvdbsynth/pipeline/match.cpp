@@ -29,15 +29,8 @@ void judge(const std::vector<BlockMatch>& exact, MatchResult& result) {
     result.recall = found / double(exact.size());
 }
 
-}  // namespace
-
-MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const MatchOptions& options,
-                       const RunContext& ctx) {
-    requireOption(options.block >= 4 && options.block <= 256, "block", std::to_string(options.block),
-                  "a whole number from 4 to 256");
-    requireOption(options.count >= 1 && options.count <= 100000, "count", std::to_string(options.count),
-                  "a whole number from 1 to 100000");
-    const ThreadLimit limit(ctx);
+MatchResult matched(const LevelSet& exemplar, const LevelSet& query, const MatchOptions& options,
+                    const RunContext& ctx) {
     blockPositions(BrickField(IndexBox::fromSize(exemplar.domain.size()), 0.f),
                    options.block);  // refuses a block larger than the domain
     if (std::abs(voxelSizeOf(*exemplar.grid) - voxelSizeOf(*query.grid)) > 1e-5 * voxelSizeOf(*exemplar.grid))
@@ -96,6 +89,17 @@ MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const Ma
     stage.advance();
     for (BlockMatch& match : result.matches) match.position = match.position + exemplar.domain.min;
     return result;
+}
+
+}  // namespace
+
+MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const MatchOptions& options,
+                       const RunContext& ctx) {
+    requireOption(options.block >= 4 && options.block <= 256, "block", std::to_string(options.block),
+                  "a whole number from 4 to 256");
+    requireOption(options.count >= 1 && options.count <= 100000, "count", std::to_string(options.count),
+                  "a whole number from 1 to 100000");
+    return withThreads(ctx, [&] { return matched(exemplar, query, options, ctx); });
 }
 
 }  // namespace vdbsynth

@@ -154,15 +154,9 @@ void requireModelPath(const std::string& path) {
                                               kRasterExtensions + ", each also with .gz");
 }
 
-LevelSet loadModel(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
-    requireModelPath(path);
-    requireOption(options.voxelSize >= 0 && options.voxelSize < 1e30, "voxel-size",
-                  std::to_string(options.voxelSize), "above 0 (world)");
-    requireOption(options.resolution == 0 || (options.resolution >= 2 && options.resolution <= 100000),
-                  "resolution", std::to_string(options.resolution), "a whole number from 2 to 100000");
-    requireOption(options.halfWidth >= 1.5 && options.halfWidth <= 100, "half-width",
-                  std::to_string(options.halfWidth), "from 1.5 to 100 voxels");
-    const ThreadLimit limit(ctx);
+namespace {
+
+LevelSet loaded(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
     if (isPointPath(path) || holdsPoints(path)) return loadPoints(path, options, ctx);
     if (isMeshPath(path)) return loadMesh(path, options, ctx);
     if (isRasterPath(path)) return loadRaster(path, options, ctx);
@@ -180,17 +174,30 @@ LevelSet loadModel(const std::string& path, const ModelOptions& options, const R
     return model;
 }
 
+}  // namespace
+
+LevelSet loadModel(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
+    requireModelPath(path);
+    requireOption(options.voxelSize >= 0 && options.voxelSize < 1e30, "voxel-size",
+                  std::to_string(options.voxelSize), "above 0 (world)");
+    requireOption(options.resolution == 0 || (options.resolution >= 2 && options.resolution <= 100000),
+                  "resolution", std::to_string(options.resolution), "a whole number from 2 to 100000");
+    requireOption(options.halfWidth >= 1.5 && options.halfWidth <= 100, "half-width",
+                  std::to_string(options.halfWidth), "from 1.5 to 100 voxels");
+    return withThreads(ctx, [&] { return loaded(path, options, ctx); });
+}
+
 LevelSet withHalfWidth(const LevelSet& model, double halfWidth, const RunContext& ctx) {
     requireOption(halfWidth >= 1.5 && halfWidth <= 100, "half-width", std::to_string(halfWidth),
                   "from 1.5 to 100 voxels");
     const double present = halfWidthOf(*model.grid);
     if (std::abs(present - halfWidth) < 1e-3 * halfWidth) return model;
-    const ThreadLimit limit(ctx);
     message(ctx, MessageLevel::Detail,
             "the band of " + std::to_string(present) + " voxels a side is re-distanced to " +
                 std::to_string(halfWidth));
     LevelSet result = model;
-    result.grid = rebuildLevelSet(*model.grid, float(halfWidth), "the model", ctx);
+    result.grid =
+        withThreads(ctx, [&] { return rebuildLevelSet(*model.grid, float(halfWidth), "the model", ctx); });
     stampLevelSet(result);
     return result;
 }

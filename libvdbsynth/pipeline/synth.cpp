@@ -145,19 +145,7 @@ void gatherGuides(const SynthOptions& options, const LevelSets& exemplars, Synth
     plan.block.guideWeight = float(options.guideWeight);
 }
 
-}  // namespace
-
-SynthResult synthesize(const LevelSets& exemplars, const SynthOptions& options, const RunContext& ctx) {
-    const ThreadLimit limit(ctx);
-    if (exemplars.empty()) throw Error(ErrorCode::InvalidOption, "synthesis needs at least one exemplar");
-    requireOption(!options.which || exemplars.size() > 1, "which", "for one exemplar",
-                  "several exemplars, of which it says which goes where");
-    requireOption(bool(options.guide) == !options.exemplarGuides.empty(), "guide", "alone",
-                  "both --guide and --exemplar-guide");
-    requireOption(options.longestRun >= 0.01 && options.longestRun <= 1, "longest-run",
-                  std::to_string(options.longestRun), "from 0.01 to 1");
-    requireOption(options.guideWeight >= 0.001 && options.guideWeight <= 1000, "guide-weight",
-                  std::to_string(options.guideWeight), "from 0.001 to 1000");
+SynthResult synthesized(const LevelSets& exemplars, const SynthOptions& options, const RunContext& ctx) {
     SynthPlan plan = planSynthesis(exemplars, options);
     const int block = plan.block.block;
     const openvdb::FloatGrid& like = *exemplars.front()->grid;
@@ -191,6 +179,21 @@ SynthResult synthesize(const LevelSets& exemplars, const SynthOptions& options, 
     result.stats = synthesis.stats;
     result.stats.block = result.map.matched;
     return result;
+}
+
+}  // namespace
+
+SynthResult synthesize(const LevelSets& exemplars, const SynthOptions& options, const RunContext& ctx) {
+    if (exemplars.empty()) throw Error(ErrorCode::InvalidOption, "synthesis needs at least one exemplar");
+    requireOption(!options.which || exemplars.size() > 1, "which", "for one exemplar",
+                  "several exemplars, of which it says which goes where");
+    requireOption(bool(options.guide) == !options.exemplarGuides.empty(), "guide", "alone",
+                  "both --guide and --exemplar-guide");
+    requireOption(options.longestRun >= 0.01 && options.longestRun <= 1, "longest-run",
+                  std::to_string(options.longestRun), "from 0.01 to 1");
+    requireOption(options.guideWeight >= 0.001 && options.guideWeight <= 1000, "guide-weight",
+                  std::to_string(options.guideWeight), "from 0.001 to 1000");
+    return withThreads(ctx, [&] { return synthesized(exemplars, options, ctx); });
 }
 
 SynthResult synthesize(const LevelSet& exemplar, const SynthOptions& options, const RunContext& ctx) {
@@ -289,11 +292,8 @@ int factorOf(const SourceMap& map, const LevelSet& exemplar) {
     return factor;
 }
 
-}  // namespace
-
-LevelSet repeatSynthesis(const SourceMap& map, const LevelSets& exemplars, const RunContext& ctx,
-                         CarriedValues carried) {
-    const ThreadLimit limit(ctx);
+LevelSet repeated(const SourceMap& map, const LevelSets& exemplars, const RunContext& ctx,
+                  CarriedValues carried) {
     if (exemplars.size() != map.exemplars.size())
         throw Error(ErrorCode::ShapeMismatch, "the source map was made with " +
                                                   std::to_string(map.exemplars.size()) +
@@ -320,6 +320,13 @@ LevelSet repeatSynthesis(const SourceMap& map, const LevelSets& exemplars, const
         scaled, voteThroughMap(scaled.patches, variantsOf(scaled, fields, ctx), ctx), fields, like, ctx);
     model.carried = carryThroughMap(scaled, exemplars, *model.grid, carried, ctx);
     return model;
+}
+
+}  // namespace
+
+LevelSet repeatSynthesis(const SourceMap& map, const LevelSets& exemplars, const RunContext& ctx,
+                         CarriedValues carried) {
+    return withThreads(ctx, [&] { return repeated(map, exemplars, ctx, carried); });
 }
 
 LevelSet repeatSynthesis(const SourceMap& map, const LevelSet& exemplar, const RunContext& ctx) {

@@ -171,15 +171,16 @@ FloatGridPtr openVdbLevelSet(const Mesh& mesh, double voxelSize, double halfWidt
     requireBandMemory(mesh, voxelSize, halfWidth, name, ctx);
     Stage stage(ctx, "mesh to level set", 1);
     const Faces faces = facesOf(mesh);
-    const ThreadLimit limit(ctx);
     return behindWall(ErrorCode::Unusable, name, [&] {
         Interrupter interrupter(ctx);
         openvdb::util::NullInterrupter& base = interrupter;
         const auto transform = openvdb::math::Transform::createLinearTransform(voxelSize);
-        const openvdb::FloatGrid::Ptr grid =
-            exact ? unsmoothed(base, *transform, faces, float(halfWidth))
-                  : openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(
-                        base, *transform, faces.points, faces.triangles, faces.quads, float(halfWidth));
+        const openvdb::FloatGrid::Ptr grid = withThreads(ctx, [&] {
+            return exact
+                       ? unsmoothed(base, *transform, faces, float(halfWidth))
+                       : openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(
+                             base, *transform, faces.points, faces.triangles, faces.quads, float(halfWidth));
+        });
         throwIfCancelled(ctx);
         stage.advance();
         return FloatGridPtr(grid);

@@ -209,7 +209,6 @@ Picture renderPreview(const openvdb::FloatGrid& grid, const PreviewOptions& opti
                   "from 1 to 64");
     const openvdb::Vec3SGrid* directions = vectorsOf(options.directions);
     const IndexBox box = solidBox(grid, "the model");
-    const ThreadLimit limit(ctx);
     // The corners of the solid's box in world space; a rotated grid gives the box around them.
     Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
     for (int c = 0; c < 8; ++c) {

@@ -1,5 +1,6 @@
 // Which grid of a VDB file is the model, and what makes a level set of it.
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/vdb_file.h"
@@ -86,6 +87,16 @@ bool keepsDistances(const openvdb::FloatGrid& grid) {
     return true;
 }
 
+// The zero level in the voxels of another transform, by OpenVDB.
+openvdb::FloatGrid::Ptr rebuiltBy(const openvdb::FloatGrid& grid, const openvdb::math::Transform& transform,
+                                  const std::string& what, const RunContext& ctx) {
+    return withThreads(ctx, [&] {
+        return behindWall(ErrorCode::Unusable, what, [&] {
+            return openvdb::tools::levelSetRebuild(grid, 0.f, kHalfWidth, kHalfWidth, &transform);
+        });
+    });
+}
+
 openvdb::FloatGrid::Ptr fogToLevelSet(const std::string& path, const openvdb::FloatGrid& fog, double iso,
                                       const RunContext& ctx) {
     const ValueRange range = rangeOf(fog);
@@ -151,9 +162,7 @@ LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& gri
             for (auto it = grid->beginValueAll(); it; ++it) it.setValue(float(*options.iso) - *it);
             grid->tree().root().setBackground(float(*options.iso) - grid->background(), false);
         }
-        grid = behindWall(ErrorCode::Unusable, path, [&] {
-            return openvdb::tools::levelSetRebuild(*grid, 0.f, kHalfWidth, kHalfWidth, transform.get());
-        });
+        grid = rebuiltBy(*grid, *transform, path, ctx);
         model.domainRecorded = false;
     } else if (asFog) {
         grid = fogToLevelSet(path, *grid, *options.iso, ctx);
@@ -178,9 +187,7 @@ LevelSet resampled(const LevelSet& model, double voxelSize, const RunContext& ct
     // Scaled in index space: the transform keeps its rotation and origin.
     const openvdb::math::Transform::Ptr transform = model.grid->transform().copy();
     transform->preScale(1 / ratio);
-    result.grid = behindWall(ErrorCode::Unusable, "resampling", [&] {
-        return openvdb::tools::levelSetRebuild(*model.grid, 0.f, kHalfWidth, kHalfWidth, transform.get());
-    });
+    result.grid = rebuiltBy(*model.grid, *transform, "resampling", ctx);
     throwIfCancelled(ctx);
     result.domain = solidBox(*result.grid, "the model in voxels of " + std::to_string(voxelSize));
     if (model.domainRecorded) {

@@ -328,7 +328,7 @@ void checkOptions(const FilterAnalogyOptions& options) {
         requireOption(value >= low && value <= high, name, std::to_string(value),
                       "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
     };
-    whole(options.half, 1, 4, "samples");
+    whole(options.half, 1, 4, "half");
     whole(options.levels, 1, 4, "levels");
     whole(options.components, 4, 256, "components");
 }

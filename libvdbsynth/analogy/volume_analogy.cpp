@@ -365,8 +365,8 @@ void checkOptions(const VolumeAnalogyOptions& options) {
     };
     whole(options.levels, 0, 6, "levels");
     whole(options.sweeps, 0, 10, "sweeps");
-    whole(options.half, 1, 4, "neighbourhood");
-    whole(options.coarseHalf, 1, 3, "coarse-neighbourhood");
+    whole(options.half, 1, 4, "half");
+    whole(options.coarseHalf, 1, 3, "coarseHalf");
     whole(options.components, 4, 256, "components");
     requireOption(options.coherence >= 0 && options.coherence <= 100, "coherence",
                   std::to_string(options.coherence), "from 0 to 100");

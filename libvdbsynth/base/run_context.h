@@ -43,7 +43,7 @@ void throwIfCancelled(const RunContext& ctx);
 
 void message(const RunContext& ctx, MessageLevel level, const std::string& text);
 
-/// @throw Error Memory "WHAT needs X GB, over --max-memory Y GB: HINT" if `bytes` is over ctx.maxMemory
+/// @throw Error Memory "WHAT needs X GB, over `maxMemory` Y GB: HINT" if `bytes` is over ctx.maxMemory
 void requireMemory(const RunContext& ctx, double bytes, const std::string& what, const std::string& hint);
 
 /// Reports one stage of work from the calling thread; the destructor does not report.

@@ -174,10 +174,10 @@ RasterField heightField(const std::string& name, const Raster& given, const Heig
           std::abs(slab.high / slab.voxel) < 1e8))
         throw Error(ErrorCode::Unusable, name + ": heights from " + rounded(slab.low) + " to " +
                                              rounded(slab.high) + " in voxels of " + rounded(slab.voxel) +
-                                             " need over a million a side; use larger ones, or --height");
+                                             " need over a million a side; use larger ones, or `height`");
     requireMemory(ctx, columns * rows * 8 * (60 + 0.016 * tall) + 2 * (columns + rows) * tall * 800,
                   name + " in voxels of " + rounded(slab.voxel),
-                  "use a larger --voxel-size or a smaller --resolution");
+                  "use a larger `voxelSize` or a smaller `resolution`");
     Stage stage(ctx, "heights to field", 1);
     const HeightMap map =
         resampled(fromRaster(raster), slab.voxel / slab.pixelX, slab.voxel / slab.pixelY, ctx);
@@ -220,7 +220,7 @@ RasterField heightField(const std::string& name, const Raster& given, const Heig
                          (slab.pixelX == slab.pixelY ? "" : " x " + rounded(slab.pixelY)) + ", voxels of " +
                          rounded(slab.voxel) + " (world" +
                          (raster.unit.empty() || options.pixelSize > 0 ? "" : ", in " + raster.unit) + ")" +
-                         (options.height > 0 ? "" : "; --height sets how tall it is");
+                         (options.height > 0 ? "" : "; `height` sets how tall it is");
     if (range.missing > 0)
         result.description += "; " + std::to_string(range.missing) + " pixels without data are holes";
     stage.advance();

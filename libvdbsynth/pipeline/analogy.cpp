@@ -41,7 +41,7 @@ BrickField weights(const AnalogyOptions& options, const IndexBox& box, const ope
     frame.like = &like;
     const bool solid = options.mask->getGridClass() == openvdb::GRID_LEVEL_SET;
     const float border = kMaskBorder * float(voxelSizeOf(like));
-    const BrickField mask = sampledScalar(*options.mask, frame, "--mask", ctx);
+    const BrickField mask = sampledScalar(*options.mask, frame, "`mask`", ctx);
     return BrickField::generate(mask.box(), ctx, [&](const IndexBox& brick, float* samples) {
         mask.readBox(brick.min, brick.size(), samples);
         for (int i = 0; i < BrickField::kSamples; ++i) {
@@ -176,7 +176,7 @@ AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const Leve
     const CutFaces cut = facesTouched(target);
     const IndexBox box = grown(target.domain, cut, band);
     requireMemory(ctx, double(box.volume()) * 6 + double(activeVoxels(*target.grid)) / 6 * 2 * band * 160,
-                  "the analogy", "use larger voxels, fewer --levels or a smaller --neighbourhood");
+                  "the analogy", "use larger voxels, fewer `levels` or a smaller `half`");
     const auto plain =
         std::make_shared<const BrickField>(widenBand(*target.grid, box, cut, float(band), ctx));
     const FieldPlace place{target.grid.get(), {double(box.min.x), double(box.min.y), double(box.min.z)}, 1};
@@ -201,7 +201,7 @@ AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const Leve
                     "the texture takes all of the target away: it goes " +
                         std::to_string(int(std::ceil(result.reach))) +
                         " voxels deep, and the target is thinner; use smaller voxels for the target, or a "
-                        "smaller --scale or --strength");
+                        "smaller `scale` or `strength`");
     }
     result.model.domain = target.domainRecorded ? target.domain : solidBox(*result.model.grid, "the result");
     result.model.domainRecorded = target.domainRecorded;

@@ -29,7 +29,8 @@ struct DirectionSource {
     std::vector<Stroke> strokes;
 };
 
-/// Metadata of a level set that says which way its texture runs, as --direction has it; `make` writes it.
+/// Metadata of a level set that says which way its texture runs, as parseDirection takes it; `make` writes
+/// it.
 inline constexpr const char* kDirectionKey = "vdbsynth:direction";
 
 /// `axis:x`, `axis:-z`, `around:y`, `radial`, `curvature`.

@@ -258,13 +258,13 @@ Comparison compareModels(const CompareInput& reference, const std::vector<Compar
                   "a whole number from 2 to 100");
     if (options.process && !reference.model.domainRecorded)
         throw Error(ErrorCode::Unusable, reference.name +
-                                             ": has no recorded domain, so --process cannot "
+                                             ": has no recorded domain, so `process` cannot "
                                              "tell what size to make; crop it to a box first");
     const Index3 size = reference.model.domain.size();
     if (options.process &&
         (std::min({size.x, size.y, size.z}) < 8 || std::max({size.x, size.y, size.z}) > 4096))
         throw Error(ErrorCode::Unusable,
-                    reference.name + ": --process makes domains of 8 to 4096 voxels a side only");
+                    reference.name + ": `process` makes domains of 8 to 4096 voxels a side only");
     return withThreads(ctx, [&] { return compared(reference, others, options, ctx); });
 }
 

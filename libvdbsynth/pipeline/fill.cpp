@@ -77,7 +77,7 @@ Surroundings surroundingsOf(const LevelSet& partial, const openvdb::FloatGrid& h
         box = box.intersection(partial.domain);
         if (box.empty())
             throw Error(ErrorCode::Unusable,
-                        "--hole: lies outside the model's domain " + boxText(partial.domain));
+                        "`hole`: lies outside the model's domain " + boxText(partial.domain));
         for (int axis = 0; axis < 3; ++axis) {
             around.cut[std::size_t(2 * axis)] = box.min[axis] == partial.domain.min[axis];
             around.cut[std::size_t(2 * axis + 1)] = box.max[axis] == partial.domain.max[axis];
@@ -244,16 +244,15 @@ LevelSet boxHole(const LevelSet& partial, const IndexBox& box, const RunContext&
 LevelSet holesAtOpenEdges(const LevelSet& partial, const RunContext& ctx) {
     if (!partial.source)
         throw Error(ErrorCode::Unusable,
-                    "--hole auto: needs a mesh, whose open edges say where the holes are; give "
-                    "--hole a model or a box");
+                    "`hole`: needs a mesh, whose open edges say where the holes are; give a model or a box");
     Mesh welded = *partial.source;
     weldVertices(welded);
     if (summarize(welded).openEdges == 0)
-        throw Error(ErrorCode::Unusable, "--hole auto: the mesh has no open edges, so no holes");
+        throw Error(ErrorCode::Unusable, "`hole`: the mesh has no open edges, so no holes");
     const std::vector<Vec3f> sheets = closingSheets(partial, ctx);
     if (sheets.empty())
         throw Error(ErrorCode::Unusable,
-                    "--hole auto: all holes of the mesh are smaller than two voxels and closed "
+                    "`hole`: all holes of the mesh are smaller than two voxels and closed "
                     "already; use smaller voxels to fill them");
     IndexBox box;
     for (const Vec3f& p : sheets)

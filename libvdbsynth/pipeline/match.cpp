@@ -37,7 +37,7 @@ MatchResult matched(const LevelSet& exemplar, const LevelSet& query, const Match
         throw Error(ErrorCode::ShapeMismatch,
                     "the query's voxel size " + std::to_string(voxelSizeOf(*query.grid)) +
                         " is not the exemplar's " + std::to_string(voxelSizeOf(*exemplar.grid)) +
-                        "; convert one of them with --voxel-size");
+                        "; convert one of them with `voxelSize`");
     const float band = std::max(8.f, float(options.block) / 2);
     const auto field = std::make_shared<const BrickField>(
         widenBand(*exemplar.grid, exemplar.domain, facesOf(exemplar), band, ctx));
@@ -46,7 +46,7 @@ MatchResult matched(const LevelSet& exemplar, const LevelSet& query, const Match
     const IndexBox box = IndexBox::cube(options.at, options.block);
     if (query.domain.intersection(box).empty())
         throw Error(ErrorCode::Unusable,
-                    "--at " + std::to_string(options.at.x) + "," + std::to_string(options.at.y) + "," +
+                    "`at` " + std::to_string(options.at.x) + "," + std::to_string(options.at.y) + "," +
                         std::to_string(options.at.z) + ": the block lies outside the query's domain " +
                         boxText(query.domain));
     IndexBox reach = query.domain;
@@ -74,10 +74,10 @@ MatchResult matched(const LevelSet& exemplar, const LevelSet& query, const Match
         options.mask ? std::size_t(std::count(known.begin(), known.end(), std::uint8_t(1))) : count;
     if (result.known == 0)
         throw Error(ErrorCode::Unusable,
-                    "--mask: not active anywhere in the query's block, so there is nothing to compare");
+                    "`mask`: not active anywhere in the query's block, so there is nothing to compare");
     BlockIndexOptions indexOptions;
     indexOptions.block = options.block;
-    indexOptions.cacheFolder = options.indexFolder;
+    indexOptions.cacheFolder = options.indexCache;
     Stage stage(ctx, "matching", 2);
     const BlockIndex index = BlockIndex::build(field, indexOptions, ctx);
     stage.advance();

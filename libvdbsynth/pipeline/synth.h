@@ -32,13 +32,13 @@ struct SynthOptions {
     GridPtr exemplarMask;  ///< sources only where this grid is active; its box is the domain unless
                            ///< exemplarBox says another; null: everywhere; of the first exemplar
     /// Controls, read in the world of the target (guides of exemplars in theirs), see control.h; null: none.
-    GridPtr which;                        ///< which exemplar where; needs several
-    GridPtr rotation, scale;              ///< by how much what is copied is turned and scaled
+    GridPtr exemplarMap;                  ///< which exemplar where; needs several
+    GridPtr rotationMap, scaleMap;        ///< by how much what is copied is turned and scaled
     GridPtr guide;                        ///< a scalar by which parts of the exemplars are placed
     std::vector<GridPtr> exemplarGuides;  ///< the same scalar over each exemplar
     double guideWeight = 4;               ///< 0.001 to 1000, see BlockSynthesisOptions
     double longestRun = 0.3;              ///< 0.01 to 1, see BlockSynthesisOptions
-    std::string indexFolder;              ///< BlockIndexOptions::cacheFolder; empty: none
+    std::string indexCache;               ///< BlockIndexOptions::cacheFolder; empty: none
     float halfWidth = kHalfWidth;         ///< [voxels] of the result
     CarriedValues carried = CarriedValues::Copied;
 };

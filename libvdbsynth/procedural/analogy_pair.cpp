@@ -213,7 +213,7 @@ AnalogyPairFields makeAnalogyPair(const ExemplarOptions& options, const RunConte
         std::to_string(options.resolution),
         "at least four features (" + std::to_string(int(std::ceil(4 * feature))) + ") and at most 4096");
     requireMemory(ctx, double(options.resolution) * options.resolution * options.resolution * 24,
-                  "make " + kind->name, "use a smaller --resolution");
+                  "make " + kind->name, "use a smaller `resolution`");
     Stage stage(ctx, "make " + kind->name, 1);
     AnalogyPairFields pair = kind->name == "grooves"    ? grooves(options.resolution, feature, ctx)
                              : kind->name == "thorns"   ? thorns(options.resolution, feature, ctx)

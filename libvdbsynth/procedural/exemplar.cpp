@@ -55,7 +55,7 @@ ExemplarField makeExemplar(const ExemplarOptions& options, const RunContext& ctx
                       std::to_string(size.x) + "," + std::to_string(size.y) + "," + std::to_string(size.z),
                       "three whole numbers from 8 to 4096");
     requireMemory(ctx, double(size.x) * size.y * size.z * 12, "make " + kind.name,
-                  "use a smaller --resolution or --size");
+                  "use a smaller `resolution` or `size`");
     ExemplarRequest request;
     request.domain = IndexBox::fromSize(size);
     request.box = request.domain.expanded(kExemplarMargin);

@@ -83,7 +83,7 @@ struct BlockIndexOptions {
 class BlockIndex {
 public:
     /// @param exemplar  box begins at 0; kept alive and shared
-    /// @throw Error InvalidOption (--block out of range), Unusable (block larger than the exemplar, no
+    /// @throw Error InvalidOption (`block` out of range), Unusable (block larger than the exemplar, no
     ///              block inside the mask), Memory (by ctx.maxMemory), Io (cacheFolder), Cancelled
     /// @par Cost    time O(positions whose blocks are not constant * N), memory 14 bytes each of those and 4
     ///              for each of their means and once more; constant blocks cost 16 bytes a run along z

@@ -59,9 +59,9 @@ struct BlockSynthesisOptions {
     /// the target. Sources may then come from anywhere along every axis. Both or none.
     const BrickField* known = nullptr;
     const BrickField* open = nullptr;
-    bool guessed = false;     ///< what `known` has where it is open is a guess to begin with, not nothing
-    std::string indexFolder;  ///< BlockIndexOptions::cacheFolder; empty: none
-    bool paper = false;       ///< synthesizeBlocks as the paper has it; the block is then a power of two
+    bool guessed = false;    ///< what `known` has where it is open is a guess to begin with, not nothing
+    std::string indexCache;  ///< BlockIndexOptions::cacheFolder; empty: none
+    bool paper = false;      ///< synthesizeBlocks as the paper has it; the block is then a power of two
 };
 
 struct BlockSynthesisStats {

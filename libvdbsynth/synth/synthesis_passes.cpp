@@ -98,7 +98,7 @@ std::vector<SynthesisPass> planPasses(const Fields& exemplars, const BlockSynthe
     }
     if (options.levels > int(passes.size()))
         message(ctx, MessageLevel::Note,
-                "--levels " + std::to_string(options.levels) + ": the exemplar is large enough for " +
+                "`levels` " + std::to_string(options.levels) + ": the exemplar is large enough for " +
                     std::to_string(passes.size()) + "; using those");
     return passes;
 }
@@ -134,7 +134,7 @@ void validateSynthesis(const std::vector<Index3>& exemplars, const BlockSynthesi
     requireOption(options.block == 0 || (options.block >= 4 && options.block <= 256), "block",
                   std::to_string(options.block), "a whole number from 4 to 256");
     requireOption(!options.paper || (options.block & (options.block - 1)) == 0, "block",
-                  std::to_string(options.block), "a power of two with --method paper");
+                  std::to_string(options.block), "a power of two with `method` paper");
     requireOption(options.levels >= 0 && options.levels <= 8, "levels", std::to_string(options.levels),
                   "a whole number from 1 to 8");
     requireOption(options.drift >= 0, "drift", std::to_string(options.drift), "at least 0 voxels");
@@ -142,19 +142,19 @@ void validateSynthesis(const std::vector<Index3>& exemplars, const BlockSynthesi
         for (int axis = 0; axis < 3; ++axis) {
             const int length = exemplar[axis];
             if (!options.open && !options.grows && options.size[axis] < length)
-                throw Error(ErrorCode::Unusable, "--size " + size +
+                throw Error(ErrorCode::Unusable, "`size` " + size +
                                                      ": smaller than the exemplar's domain along " +
                                                      char('x' + axis) + " (" + std::to_string(length) +
                                                      " voxels); give at least that, or 1x");
             if (options.block > length)
-                throw Error(ErrorCode::Unusable, "--block " + std::to_string(options.block) +
+                throw Error(ErrorCode::Unusable, "`block` " + std::to_string(options.block) +
                                                      ": larger than the exemplar, which has " +
                                                      std::to_string(length) + " voxels along " +
                                                      char('x' + axis));
             if (options.block > 0 && grows(options, axis, length) &&
                 options.border[std::size_t(axis)] == Border::Object && options.block * 4 > length)
                 throw Error(ErrorCode::Unusable,
-                            "--block " + std::to_string(options.block) +
+                            "`block` " + std::to_string(options.block) +
                                 ": an object border needs an exemplar of four blocks along " +
                                 char('x' + axis) + ", it has " + std::to_string(length) + " voxels");
         }
@@ -163,11 +163,10 @@ void validateSynthesis(const std::vector<Index3>& exemplars, const BlockSynthesi
 int deriveBlock(const Index3& exemplar, const BlockSynthesisOptions& options) {
     const int block = std::min(16, longestBlock(exemplar, options));
     if (block < 4)
-        throw Error(
-            ErrorCode::Unusable,
-            "the exemplar's domain of " + std::to_string(exemplar.x) + " x " + std::to_string(exemplar.y) +
-                " x " + std::to_string(exemplar.z) +
-                " voxels is too small for blocks of 4; use smaller voxels or a larger --exemplar-box");
+        throw Error(ErrorCode::Unusable,
+                    "the exemplar's domain of " + std::to_string(exemplar.x) + " x " +
+                        std::to_string(exemplar.y) + " x " + std::to_string(exemplar.z) +
+                        " voxels is too small for blocks of 4; use smaller voxels or a larger `exemplarBox`");
     return block;
 }
 

@@ -146,8 +146,8 @@ FloatGridPtr soupToField(const Mesh& indexMesh, const std::string& name, const R
         throw Error(ErrorCode::Unusable,
                     name + ": a sheet with " + std::to_string(summarize(indexMesh).openEdges) +
                         " open edges: " + std::to_string(int(100 * (1 - share))) +
-                        " % of its area bounds nothing; close the mesh or make a shell with --open shell "
-                        "--thickness W");
+                        " % of its area bounds nothing; close the mesh or make a shell with `open` shell "
+                        "`thickness` W");
     return withThreads(ctx, [&] {
         return behindWall(ErrorCode::Unusable, name, [&] { return Soup(indexMesh, winding, ctx).run(); });
     });

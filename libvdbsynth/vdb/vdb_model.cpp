@@ -44,7 +44,7 @@ GridPtr pickGrid(const std::string& path, const std::vector<GridPtr>& grids, con
         }
     }
     if (!options.gridName.empty())
-        throw Error(ErrorCode::BadData, "--grid " + options.gridName + ": not in " + path + ", which has " +
+        throw Error(ErrorCode::BadData, "`grid` " + options.gridName + ": not in " + path + ", which has " +
                                             (names.empty() ? "no grids" : names));
     if (options.iso && fog) return fog;
     if (levelSet) return levelSet;
@@ -102,14 +102,14 @@ openvdb::FloatGrid::Ptr fogToLevelSet(const std::string& path, const openvdb::Fl
     const ValueRange range = rangeOf(fog);
     if (iso <= std::min(range.minimum, double(fog.background())) || iso >= range.maximum)
         throw Error(ErrorCode::Unusable,
-                    "--iso " + std::to_string(iso) + ": no surface there; the values of \"" + fog.getName() +
+                    "`iso` " + std::to_string(iso) + ": no surface there; the values of \"" + fog.getName() +
                         "\" in " + path + " run from " +
                         std::to_string(std::min(range.minimum, double(fog.background()))) + " to " +
                         std::to_string(range.maximum));
     openvdb::FloatGrid::Ptr field = fog.deepCopy();
     for (auto it = field->beginValueAll(); it; ++it) it.setValue(float(iso) - *it);
     field->tree().root().setBackground(float(iso) - fog.background(), /* updateChildNodes= */ false);
-    return rebuildLevelSet(*field, kHalfWidth, path + ": --iso", ctx);
+    return rebuildLevelSet(*field, kHalfWidth, path + ": `iso`", ctx);
 }
 
 }  // namespace
@@ -149,7 +149,7 @@ LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& gri
             ErrorCode::Unusable,
             path + ": grid \"" + grid->getName() + "\" is a " +
                 (grid->getGridClass() == openvdb::GRID_FOG_VOLUME ? "fog volume" : "plain scalar grid") +
-                ", not a level set; say where its surface is with --iso VALUE (its values run from " +
+                ", not a level set; say where its surface is with `iso` VALUE (its values run from " +
                 std::to_string(rangeOf(*grid).minimum) + " to " + std::to_string(rangeOf(*grid).maximum) +
                 ")");
     if (!keepsDistances(*grid)) {

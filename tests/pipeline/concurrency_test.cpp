@@ -33,7 +33,7 @@ std::string synthHash(const LevelSet& exemplar, const RunContext& ctx) {
 
 std::string analogyHash(const ModelPair& pair, const LevelSet& target, const RunContext& ctx) {
     AnalogyOptions options;
-    REQUIRE(parseDirection("around:z", options.direction));
+    options.direction.kind = DirectionSource::Kind::Around;
     return levelSetHash(*makeAnalogyModel({{&pair.plain, &pair.textured}}, target, options, ctx).model.grid);
 }
 
@@ -41,7 +41,7 @@ std::string matchText(const LevelSet& model, const std::string& indexFolder, con
     MatchOptions options;
     options.at = {9, 11, 14};
     options.count = 20;
-    options.indexFolder = indexFolder;
+    options.indexCache = indexFolder;
     std::string text;
     for (const BlockMatch& match : matchModel(model, model, options, ctx).matches)
         text += std::to_string(match.position.x) + " " + std::to_string(match.position.y) + " " +

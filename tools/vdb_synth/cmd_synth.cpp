@@ -91,7 +91,7 @@ SynthOptions parseOptions(const Arguments& arguments) {
     options.draft = arguments.has("draft");
     options.carried = carriedValues(arguments);
     options.method = parseMethod(arguments);
-    options.indexFolder = indexFolder(arguments);
+    options.indexCache = indexFolder(arguments);
     options.longestRun = arguments.real("longest-run", 0.3, 0.01, 1);
     if (arguments.has("longest-run") && (options.draft || options.method != SynthesisMethod::Default))
         throw Error(ErrorCode::InvalidOption, "--longest-run: needs --method default and no --draft");
@@ -198,15 +198,15 @@ void loadControls(Run& run, double voxelSize, SynthOptions& options) {
     const Arguments& arguments = run.arguments;
     const std::string which = arguments.text("which");
     if (extensionOf(which) == "vdb" || which.find(".vdb:") != std::string::npos) {
-        options.which = run.loadMask("which");
+        options.exemplarMap = run.loadMask("which");
     } else if (arguments.has("which")) {
         requireModelPath(which);
         ModelOptions model;
         model.voxelSize = voxelSize;
-        options.which = asControl(run.load(which, model).grid);
+        options.exemplarMap = asControl(run.load(which, model).grid);
     }
-    if (arguments.has("rotation-map")) options.rotation = run.loadMask("rotation-map");
-    if (arguments.has("scale-map")) options.scale = run.loadMask("scale-map");
+    if (arguments.has("rotation-map")) options.rotationMap = run.loadMask("rotation-map");
+    if (arguments.has("scale-map")) options.scaleMap = run.loadMask("scale-map");
     if (!arguments.has("guide")) return;
     options.guide = run.loadMask("guide");
     for (const std::string& path : arguments.all("exemplar-guide"))

@@ -2,6 +2,7 @@
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/synth/block_synthesis.h"
 #include "libvdbsynth/synth/exemplar_variant.h"
+#include "libvdbsynth/synth/target_size.h"
 #include "libvdbsynth/vdb/level_set.h"
 
 #include <array>
@@ -18,10 +19,8 @@ enum class CarriedValues {
 };
 
 struct SynthOptions {
-    /// Per axis the target's size: in voxels, or as a multiple of the domain where `multiple` is set.
-    std::array<double, 3> size{2, 2, 2};
-    std::array<bool, 3> multiple{true, true, true};
-    std::optional<IndexBox> exemplarBox;  ///< overrides the (first) exemplar's domain
+    TargetSize size = TargetSize::multiples(2, 2, 2);  ///< at least the domain, at most 1048576 voxels a side
+    std::optional<IndexBox> exemplarBox;               ///< overrides the (first) exemplar's domain
     std::array<std::optional<Border>, 3>
         border;     ///< empty: cut where a domain is recorded or given, else object
     int block = 0;  ///< see BlockSynthesisOptions

@@ -26,10 +26,9 @@ Index3 halfOf(const Index3& n) {
 Index3 targetSize(const Index3& domain, const SynthOptions& options) {
     Index3 size;
     for (int axis = 0; axis < 3; ++axis) {
-        const double given = options.size[std::size_t(axis)];
-        const double voxels = options.multiple[std::size_t(axis)] ? given * domain[axis] : given;
-        requireOption(std::isfinite(voxels) && voxels >= 1 && voxels <= 1 << 20, "size",
-                      std::to_string(given), "at least the exemplar's domain and at most 1048576 voxels");
+        const double voxels = options.size[axis].over(domain[axis]);
+        requireOption(voxels >= 1 && voxels <= 1 << 20, "size", options.size.text(),
+                      "at least the exemplar's domain and at most 1048576 voxels");
         size[axis] = int(std::lround(voxels));
         if (size[axis] < domain[axis])
             throw Error(ErrorCode::Unusable,

@@ -28,7 +28,7 @@ LevelSet made(const char* kind, int resolution = 40, double feature = 0, double 
 
 SynthOptions sized(double x, double y, double z) {
     SynthOptions options;
-    options.size = {x, y, z};
+    options.size = TargetSize::multiples(x, y, z);
     return options;
 }
 
@@ -61,7 +61,7 @@ TEST_CASE("synthesize: a draft is valid, closed, about as full, of the size aske
         INFO(kind);
         const LevelSet exemplar = made(kind, 48);
         SynthOptions options = sized(2, 1, 1);
-        options.size[1] = 1.3;
+        options.size[1] = Extent::multiple(1.3);
         const SynthResult full = synthesize(exemplar, options);
         options.draft = true;
         const SynthResult draft = synthesize(exemplar, options);
@@ -113,8 +113,8 @@ TEST_CASE("synthesize: an object keeps its faces and grows in between", "[pipeli
 TEST_CASE("synthesize: a tiling result fills its domain and goes on at the other side",
           "[pipeline][property]") {
     const LevelSet exemplar = made("balls", 48);
-    SynthOptions options = sized(80, 80, 48);
-    options.multiple = {false, false, false};
+    SynthOptions options;
+    options.size = TargetSize::voxels(80, 80, 48);
     options.border = {Border::Tile, Border::Tile, Border::Cut};
     const SynthResult result = synthesize(exemplar, options);
     CHECK(result.model.domain.size() == Index3{80, 80, 48});
@@ -139,8 +139,8 @@ TEST_CASE("synthesize: a tiling result fills its domain and goes on at the other
 
 TEST_CASE("synthesize: sizes in voxels, an exemplar box, a mask", "[pipeline][property]") {
     const LevelSet exemplar = made("balls", 64);
-    SynthOptions options = sized(70, 50, 1);
-    options.multiple = {false, false, true};
+    SynthOptions options;
+    options.size = {Extent::voxels(70), Extent::voxels(50), Extent::multiple(1)};
     options.exemplarBox = IndexBox{{4, 4, 4}, {43, 43, 35}};
     options.exemplarMask = boxMask({{4, 4, 4}, {30, 43, 35}}, 1);
     options.block = 8;

@@ -20,17 +20,6 @@
 namespace vdbsynth::cli {
 namespace {
 
-std::string sizeText(const SynthOptions& options) {
-    std::string text;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        char part[40];
-        std::snprintf(part, sizeof part, "%s%.10g%s", axis ? "," : "", options.size[axis],
-                      options.multiple[axis] ? "x" : "");
-        text += part;
-    }
-    return text;
-}
-
 void parseSize(const Arguments& arguments, SynthOptions& options) {
     const std::string text = arguments.text("size");
     if (text.empty())
@@ -50,10 +39,9 @@ void parseSize(const Arguments& arguments, SynthOptions& options) {
         requireOption(multiple ? value >= 1 && value <= 1e6 : value == std::floor(value) && value <= 1 << 20,
                       "size", text,
                       multiple ? "multiples of at least 1x" : "whole numbers of voxels up to 1048576");
-        options.size[axis] = value;
-        options.multiple[axis] = multiple;
+        options.size[int(axis)] = multiple ? Extent::multiple(value) : Extent::voxels(int(value));
     }
-    arguments.note("size", sizeText(options));
+    arguments.note("size", options.size.text());
 }
 
 void parseBorder(const Arguments& arguments, SynthOptions& options) {

@@ -1,4 +1,5 @@
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/grid/crossing_field.h"
 #include "libvdbsynth/grid/raster_field.h"
@@ -154,8 +155,22 @@ Axes axesOf(HeightPlane plane) {
 
 }  // namespace
 
+void validate(const HeightOptions& options) {
+    const auto length = [](double value, const char* field) {
+        requireOption(value >= 0 && value < 1e30, field, roundedText(value, 6),
+                      "above 0 (world), or 0 for the default");
+    };
+    length(options.voxelSize, "voxelSize");
+    length(options.pixelSize, "pixelSize");
+    length(options.height, "height");
+    length(options.base, "base");
+    requireOption(options.resolution == 0 || (options.resolution >= 2 && options.resolution <= 100000),
+                  "resolution", std::to_string(options.resolution), "a whole number from 2 to 100000");
+}
+
 RasterField heightField(const std::string& name, const Raster& given, const HeightOptions& options,
                         const RunContext& ctx) {
+    validate(options);
     const Raster raster = luminance(given);
     const RasterRange range = rangeOf(raster);
     if (raster.size.z != 1)

@@ -2,6 +2,7 @@
 #include "libvdbsynth/grid/raster_field.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/grid/crossing_field.h"
 
 #include <algorithm>
@@ -183,10 +184,22 @@ std::vector<LabelRange> chooseLabels(const std::string& name, const RasterRange&
 
 }  // namespace
 
-RasterField volumeField(const std::string& name, const Raster& given, const VolumeOptions& options,
-                        const RunContext& ctx) {
+void validate(const VolumeOptions& options) {
     if (options.threshold && !options.labels.empty())
         throw Error(ErrorCode::InvalidOption, "`threshold` and `labels`: give one of them");
+    requireOption(!options.threshold || std::isfinite(*options.threshold), "threshold",
+                  options.threshold ? exactText(*options.threshold) : "", "a number");
+    for (const LabelRange& range : options.labels)
+        requireOption(range.first <= range.second, "labels",
+                      exactText(range.first) + ".." + exactText(range.second),
+                      "a smaller and a larger value");
+    requireOption(options.pixelSize >= 0 && options.pixelSize < 1e30, "pixelSize",
+                  roundedText(options.pixelSize, 6), "above 0 (world), or 0 for the file's");
+}
+
+RasterField volumeField(const std::string& name, const Raster& given, const VolumeOptions& options,
+                        const RunContext& ctx) {
+    validate(options);
     requireMemory(ctx, double(given.sampleCount()) * 12, name, "crop or shrink it first");
     Stage stage(ctx, "volume to field", 1);
     const Raster colourless = given.channels == 1 ? Raster() : luminance(given);

@@ -127,9 +127,9 @@ IndexBox sourcedBox(const MeasuredModel& model) {
 std::vector<SourcedVoxel> sourcesOfMap(const CompareInput& input, const PreparedModel& result,
                                        const PreparedModel& reference) {
     std::vector<SourcedVoxel> voxels;
-    const auto sources = openvdb::gridPtrCast<openvdb::Vec3IGrid>(input.source);
+    const auto sources = openvdb::gridConstPtrCast<openvdb::Vec3IGrid>(input.source);
     const auto exemplars =
-        input.exemplar ? openvdb::gridPtrCast<openvdb::Int32Grid>(input.exemplar) : nullptr;
+        input.exemplar ? openvdb::gridConstPtrCast<openvdb::Int32Grid>(input.exemplar) : nullptr;
     if (!sources) return voxels;
     for (auto it = sources->cbeginValueOn(); it; ++it) {
         if (!it.isVoxelValue()) continue;

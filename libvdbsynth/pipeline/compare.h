@@ -28,8 +28,8 @@ struct CompareOptions {
 struct CompareInput {
     std::string name;
     LevelSet model;
-    GridPtr source;    ///< Vec3I grid of a source map, in the model's voxels; null: none
-    GridPtr exemplar;  ///< Int32 grid of a source map; null: all are of the reference
+    GridConstPtr source;    ///< Vec3I grid of a source map, in the model's voxels; null: none
+    GridConstPtr exemplar;  ///< Int32 grid of a source map; null: all are of the reference
 };
 
 /// Gives the input the source map among some grids. @return false if there is none in the model's voxels

@@ -118,7 +118,7 @@ struct Readers {
 
 }  // namespace
 
-GridPtr asControl(const FloatGridPtr& grid) {
+GridConstPtr asControl(const FloatGridConstPtr& grid) {
     return grid;
 }
 

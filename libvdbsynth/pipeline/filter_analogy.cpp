@@ -64,7 +64,7 @@ GridPtr gridOf(const BrickField& field, const IndexBox& box, const openvdb::Floa
     return grid;
 }
 
-FilterGridResult filtered(const std::vector<FilterGridPair>& pairs, const FloatGridPtr& target,
+FilterGridResult filtered(const std::vector<FilterGridPair>& pairs, const FloatGridConstPtr& target,
                           const FilterAnalogyOptions& options, const RunContext& ctx) {
     const int reach = filterReach(options) + BrickField::kSide;
     std::vector<BrickField> fields;
@@ -95,11 +95,11 @@ FilterGridResult filtered(const std::vector<FilterGridPair>& pairs, const FloatG
 
 }  // namespace
 
-bool isGridOfNumbers(const FloatGridPtr& grid) {
+bool isGridOfNumbers(const FloatGridConstPtr& grid) {
     return grid->getGridClass() != openvdb::GRID_LEVEL_SET;
 }
 
-FilterGridResult makeFilteredGrid(const std::vector<FilterGridPair>& pairs, const FloatGridPtr& target,
+FilterGridResult makeFilteredGrid(const std::vector<FilterGridPair>& pairs, const FloatGridConstPtr& target,
                                   const FilterAnalogyOptions& options, const RunContext& ctx) {
     return withThreads(ctx, [&] { return filtered(pairs, target, options, ctx); });
 }

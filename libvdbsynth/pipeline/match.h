@@ -15,7 +15,7 @@ struct MatchOptions {
     double tolerance = 0;    ///< BlockSearchOptions::tolerance; 0: exact
     bool check = false;      ///< with a tolerance: the exact matches too, for MatchResult's ratio and recall
     std::string indexCache;  ///< BlockIndexOptions::cacheFolder; empty: none
-    GridPtr mask;            ///< only samples where it is active count, in the query's index space; null: all
+    GridConstPtr mask;       ///< only samples where it is active count, in the query's index space; null: all
 };
 
 struct MatchResult {

@@ -27,18 +27,18 @@ struct SynthOptions {
     int levels = 0;
     int drift = 0;
     SynthesisMethod method = SynthesisMethod::Default;
-    bool draft = false;    ///< work at half the resolution and read the result at the full one
-    GridPtr exemplarMask;  ///< sources only where this grid is active; its box is the domain unless
-                           ///< exemplarBox says another; null: everywhere; of the first exemplar
+    bool draft = false;         ///< work at half the resolution and read the result at the full one
+    GridConstPtr exemplarMask;  ///< sources only where this grid is active; its box is the domain unless
+                                ///< exemplarBox says another; null: everywhere; of the first exemplar
     /// Controls, read in the world of the target (guides of exemplars in theirs), see control.h; null: none.
-    GridPtr exemplarMap;                  ///< which exemplar where; needs several
-    GridPtr rotationMap, scaleMap;        ///< by how much what is copied is turned and scaled
-    GridPtr guide;                        ///< a scalar by which parts of the exemplars are placed
-    std::vector<GridPtr> exemplarGuides;  ///< the same scalar over each exemplar
-    double guideWeight = 4;               ///< 0.001 to 1000, see BlockSynthesisOptions
-    double longestRun = 0.3;              ///< 0.01 to 1, see BlockSynthesisOptions
-    std::string indexCache;               ///< BlockIndexOptions::cacheFolder; empty: none
-    float halfWidth = kHalfWidth;         ///< [voxels] of the result
+    GridConstPtr exemplarMap;                  ///< which exemplar where; needs several
+    GridConstPtr rotationMap, scaleMap;        ///< by how much what is copied is turned and scaled
+    GridConstPtr guide;                        ///< a scalar by which parts of the exemplars are placed
+    std::vector<GridConstPtr> exemplarGuides;  ///< the same scalar over each exemplar
+    double guideWeight = 4;                    ///< 0.001 to 1000, see BlockSynthesisOptions
+    double longestRun = 0.3;                   ///< 0.01 to 1, see BlockSynthesisOptions
+    std::string indexCache;                    ///< BlockIndexOptions::cacheFolder; empty: none
+    float halfWidth = kHalfWidth;              ///< [voxels] of the result
     CarriedValues carried = CarriedValues::Copied;
 };
 

@@ -90,10 +90,10 @@ void removeCrumbsOf(const SourceMap& map, const ExemplarFields& exemplars, Brick
 
 // Controls work by the default method, at the full resolution.
 void requireDefaultMethod(const SynthOptions& options, const SynthPlan& plan) {
-    const std::pair<const GridPtr&, const char*> controls[] = {{options.exemplarMap, "exemplarMap"},
-                                                               {options.rotationMap, "rotationMap"},
-                                                               {options.scaleMap, "scaleMap"},
-                                                               {options.guide, "guide"}};
+    const std::pair<const GridConstPtr&, const char*> controls[] = {{options.exemplarMap, "exemplarMap"},
+                                                                    {options.rotationMap, "rotationMap"},
+                                                                    {options.scaleMap, "scaleMap"},
+                                                                    {options.guide, "guide"}};
     for (const auto& [grid, name] : controls)
         if (grid && (options.method != SynthesisMethod::Default || options.draft))
             throw Error(ErrorCode::InvalidOption,
@@ -176,7 +176,7 @@ SynthPlan planSynthesis(const LevelSets& exemplars, const SynthOptions& options)
     addExemplars(exemplars, options, plan);
     std::vector<Index3> sizes;
     for (const MappedExemplar& mapped : plan.map.exemplars) sizes.push_back(mapped.box.size());
-    validateSynthesis(sizes, plan.block);
+    validate(plan.block, sizes);
     if (options.block == 0) {
         plan.block.block = 256;
         for (const Index3& each : sizes)

@@ -20,6 +20,9 @@ struct AnalogyPairFields {
     std::string direction;
 };
 
+/// @throw Error InvalidOption (unknown kind, a field out of its range)
+void validatePair(const ExemplarOptions& options);
+
 /// Both over one domain, only the zero levels are meant. `options.size` is not used: domains follow from
 /// resolution and feature.
 /// @throw Error InvalidOption (unknown kind, resolution or feature out of range), Cancelled

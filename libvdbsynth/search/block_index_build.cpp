@@ -282,8 +282,7 @@ void makeNodes(BlockIndexData& data, const RunContext& ctx) {
 
 BlockIndexData buildBlockIndexData(std::shared_ptr<const BrickField> exemplar,
                                    const BlockIndexOptions& options, const RunContext& ctx) {
-    requireOption(options.block >= 4 && options.block <= 256, "block", std::to_string(options.block),
-                  "a whole number from 4 to 256");
+    validate(options, exemplar.get());
     BlockIndexData data;
     data.block = options.block;
     data.positions = blockPositions(*exemplar, options.block);

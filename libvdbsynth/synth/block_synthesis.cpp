@@ -286,9 +286,7 @@ private:
 
 BlockSynthesisResult synthesizeBlocks(const Fields& exemplars, const BlockSynthesisOptions& options,
                                       const RunContext& ctx) {
-    std::vector<Index3> sizes;
-    for (const auto& exemplar : exemplars) sizes.push_back(exemplar->box().size());
-    validateSynthesis(sizes, options);
+    validate(options, exemplars);
     for (Border border : options.border)
         if (border == Border::Tile)
             throw Error(ErrorCode::InvalidOption, "`border` tile: needs `method` default");

@@ -257,9 +257,9 @@ private:
 BlockSynthesisResult optimizeTexture(const Fields& exemplars, const BlockSynthesisOptions& options,
                                      const RunContext& ctx) {
     BlockSynthesisOptions own = options;
+    validate(options, exemplars);
     std::vector<Index3> sizes;
     for (const auto& exemplar : exemplars) sizes.push_back(exemplar->box().size());
-    validateSynthesis(sizes, options);
     if (own.block == 0) {
         own.block = 256;
         for (const Index3& size : sizes) own.block = std::min(own.block, deriveBlock(size, options));

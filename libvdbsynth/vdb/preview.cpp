@@ -167,7 +167,7 @@ private:
     std::optional<Streaks> mStreaks;
 };
 
-const openvdb::Vec3SGrid* vectorsOf(const GridPtr& grid) {
+const openvdb::Vec3SGrid* vectorsOf(const GridConstPtr& grid) {
     if (!grid) return nullptr;
     if (!grid->isType<openvdb::Vec3SGrid>())
         throw Error(ErrorCode::BadData, "`directions`: grid " + grid->getName() + " holds " +

@@ -97,6 +97,14 @@ openvdb::FloatGrid::Ptr rebuiltBy(const openvdb::FloatGrid& grid, const openvdb:
     });
 }
 
+// Negative where a fog is denser than `iso`.
+openvdb::FloatGrid::Ptr insideOut(const openvdb::FloatGrid& fog, double iso) {
+    openvdb::FloatGrid::Ptr field = fog.deepCopy();
+    for (auto it = field->beginValueAll(); it; ++it) it.setValue(float(iso) - *it);
+    field->tree().root().setBackground(float(iso) - fog.background(), /* updateChildNodes= */ false);
+    return field;
+}
+
 openvdb::FloatGrid::Ptr fogToLevelSet(const std::string& path, const openvdb::FloatGrid& fog, double iso,
                                       const RunContext& ctx) {
     const ValueRange range = rangeOf(fog);
@@ -106,10 +114,7 @@ openvdb::FloatGrid::Ptr fogToLevelSet(const std::string& path, const openvdb::Fl
                         "\" in " + path + " run from " +
                         std::to_string(std::min(range.minimum, double(fog.background()))) + " to " +
                         std::to_string(range.maximum));
-    openvdb::FloatGrid::Ptr field = fog.deepCopy();
-    for (auto it = field->beginValueAll(); it; ++it) it.setValue(float(iso) - *it);
-    field->tree().root().setBackground(float(iso) - fog.background(), /* updateChildNodes= */ false);
-    return rebuildLevelSet(*field, kHalfWidth, path + ": `iso`", ctx);
+    return rebuildLevelSet(*insideOut(fog, iso), kHalfWidth, path + ": `iso`", ctx);
 }
 
 }  // namespace
@@ -133,8 +138,10 @@ LevelSet readVdbModel(const std::string& path, const VdbReadOptions& options, co
 
 LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& grids,
                         const VdbReadOptions& options, const RunContext& ctx) {
-    openvdb::FloatGrid::Ptr grid = asFloat(pickGrid(path, grids, options));
-    refuseUnusable(path, *grid);
+    const openvdb::FloatGrid::Ptr given = asFloat(pickGrid(path, grids, options));
+    refuseUnusable(path, *given);
+    // A name, metadata and a transform of its own; the tree is the caller's and stays as it is.
+    openvdb::FloatGrid::Ptr grid = given->copy();
     LevelSet model;
     std::string domainText;
     if (const auto meta = grid->getMetadata<openvdb::StringMetadata>(kDomainKey)) domainText = meta->value();
@@ -158,10 +165,7 @@ LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& gri
         message(ctx, MessageLevel::Note,
                 path + ": voxels are not cubes; resampled to " + std::to_string(smallest));
         const auto transform = openvdb::math::Transform::createLinearTransform(smallest);
-        if (asFog) {
-            for (auto it = grid->beginValueAll(); it; ++it) it.setValue(float(*options.iso) - *it);
-            grid->tree().root().setBackground(float(*options.iso) - grid->background(), false);
-        }
+        if (asFog) grid = insideOut(*grid, *options.iso);
         grid = rebuiltBy(*grid, *transform, path, ctx);
         model.domainRecorded = false;
     } else if (asFog) {

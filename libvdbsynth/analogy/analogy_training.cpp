@@ -25,7 +25,7 @@ AnalogyTraining::AnalogyTraining(const std::vector<AnalogyPair>& pairs, const st
         throw Error(ErrorCode::Unusable, "the pair is too small for neighbourhoods of " +
                                              std::to_string(2 * shape.half + 1) + " voxels at level " +
                                              std::to_string(level + 1) +
-                                             "; use fewer --levels, or a larger or finer pair");
+                                             "; use fewer `levels`, or a larger or finer pair");
     learn(options, ctx);
 }
 

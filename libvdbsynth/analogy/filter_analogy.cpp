@@ -323,17 +323,32 @@ BrickField filtered(const BrickField& target, const Neighbourhoods& around, cons
     return after;
 }
 
-void checkOptions(const FilterAnalogyOptions& options) {
+// Boxes may begin anywhere.
+void requirePairs(const std::vector<FilterPair>& pairs, const BrickField& target) {
+    requireOption(!pairs.empty(), "pairs", "0", "at least one");
+    for (const FilterPair& pair : pairs) {
+        if (!pair.before || !pair.after)
+            throw Error(ErrorCode::InvalidOption, "`before`, `after`: a field of a pair is null");
+        if (!(pair.before->box() == pair.after->box()))
+            throw Error(ErrorCode::ShapeMismatch,
+                        "`before`, `after`: the fields of a pair have different boxes");
+        if (!pair.before->finite() || !pair.after->finite())
+            throw Error(ErrorCode::BadData, "`before`, `after`: a pair holds NaN or infinite values");
+    }
+    if (!target.finite()) throw Error(ErrorCode::BadData, "the target holds NaN or infinite values");
+}
+
+}  // namespace
+
+void validate(const FilterAnalogyOptions& options) {
     const auto whole = [](int value, int low, int high, const char* name) {
         requireOption(value >= low && value <= high, name, std::to_string(value),
                       "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
     };
-    whole(options.half, 1, 4, "samples");
+    whole(options.half, 1, 4, "half");
     whole(options.levels, 1, 4, "levels");
     whole(options.components, 4, 256, "components");
 }
-
-}  // namespace
 
 int filterReach(const FilterAnalogyOptions& options) {
     const int last = options.levels - 1;
@@ -342,7 +357,8 @@ int filterReach(const FilterAnalogyOptions& options) {
 
 FilterAnalogyResult makeFilterAnalogy(const std::vector<FilterPair>& pairs, const BrickField& target,
                                       const FilterAnalogyOptions& options, const RunContext& ctx) {
-    checkOptions(options);
+    validate(options);
+    requirePairs(pairs, target);
     const std::size_t length = Neighbourhoods::length(options);
     FilterAnalogyResult result;
     const Gathering gathering(pairs, options, ctx);

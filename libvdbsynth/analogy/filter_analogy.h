@@ -18,6 +18,9 @@ struct FilterAnalogyOptions {
     int components = 16;  ///< principal axes that the search for what is not linear goes along, 4..256
 };
 
+/// @throw Error InvalidOption (a field out of its range)
+void validate(const FilterAnalogyOptions& options);
+
 struct FilterAnalogyStats {
     std::size_t rows = 0;    ///< voxels of the pairs that were learnt from
     double change = 0;       ///< root mean square of after - before, over held-out voxels
@@ -38,7 +41,8 @@ struct FilterAnalogyResult {
 /// that fits best by least squares, which is exact for linear filters within its reach, plus, where that errs
 /// less on voxels held out (a quarter, in blocks of 16^3), what the map missed at the nearest row.
 /// @param target  anything over any box; outside of boxes values go on as they are at the border
-/// @throw Error InvalidOption, Unusable (fewer than 1000 voxels to learn from), Cancelled
+/// @throw Error InvalidOption, ShapeMismatch (a pair over two boxes), BadData (NaN), Unusable (fewer than
+/// 1000 voxels to learn from), Cancelled
 /// @par Cost    O(voxels that are not constant * samples), and a search each if the rests are used
 /// @par Repeats same bits for any number of threads
 FilterAnalogyResult makeFilterAnalogy(const std::vector<FilterPair>& pairs, const BrickField& target,

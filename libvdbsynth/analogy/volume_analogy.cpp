@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/analogy/volume_analogy_steps.h"
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/base/parallel_sort.h"
 #include "libvdbsynth/grid/pyramid.h"
@@ -377,21 +378,36 @@ private:
     std::vector<Found> mFound;
 };
 
-void checkOptions(const VolumeAnalogyOptions& options) {
+void requirePairs(const std::vector<AnalogyPair>& pairs, const BrickField& target) {
+    requireOption(!pairs.empty(), "pairs", "0", "at least one");
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+        const std::string what = "pair " + std::to_string(p + 1);
+        requireField(pairs[p].plain.get(), what + ", plain");
+        requireField(pairs[p].textured.get(), what + ", textured", pairs[p].plain->box().size());
+        if (!pairs[p].frames) throw Error(ErrorCode::InvalidOption, what + ": `frames` are null");
+    }
+    requireField(&target, "the target");
+}
+
+}  // namespace
+
+void validate(const VolumeAnalogyOptions& options) {
     const auto whole = [](int value, int low, int high, const char* name) {
         requireOption(value >= low && value <= high, name, std::to_string(value),
                       "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
     };
     whole(options.levels, 0, 6, "levels");
     whole(options.sweeps, 0, 10, "sweeps");
-    whole(options.half, 1, 4, "neighbourhood");
-    whole(options.coarseHalf, 1, 3, "coarse-neighbourhood");
+    whole(options.half, 1, 4, "half");
+    whole(options.coarseHalf, 1, 3, "coarseHalf");
     whole(options.components, 4, 256, "components");
     requireOption(options.coherence >= 0 && options.coherence <= 100, "coherence",
-                  std::to_string(options.coherence), "from 0 to 100");
-    requireOption(options.slack >= 0 && options.slack <= 100, "slack", std::to_string(options.slack),
+                  roundedText(options.coherence, 6), "from 0 to 100");
+    requireOption(options.slack >= 0 && options.slack <= 100, "slack", roundedText(options.slack, 6),
                   "from 0 to 100");
 }
+
+namespace {
 
 bool fullAt(const std::vector<DepthRun>& depths, float plain) {
     const int depth = int(std::lround(std::clamp(plain, -1e6f, 1e6f)));
@@ -406,7 +422,8 @@ bool fullAt(const std::vector<DepthRun>& depths, float plain) {
 VolumeAnalogyResult makeAnalogy(const std::vector<AnalogyPair>& pairs, const BrickField& target,
                                 const FrameField& frames, const VolumeAnalogyOptions& given,
                                 const RunContext& ctx) {
-    checkOptions(given);
+    validate(given);
+    requirePairs(pairs, target);
     VolumeAnalogyOptions options = given;
     if (options.levels == 0) options.levels = usefulLevels(pairs, ctx);
     std::vector<PairLevels> levels;

@@ -33,6 +33,9 @@ struct VolumeAnalogyOptions {
     bool aligned = true;  ///< false: the paper's naive variant, neighbourhoods along the grid's axes
 };
 
+/// @throw Error InvalidOption (a field out of its range)
+void validate(const VolumeAnalogyOptions& options);
+
 /// What one level took.
 struct AnalogyLevelStats {
     std::size_t voxels = 0;      ///< that were synthesised
@@ -78,7 +81,8 @@ inline constexpr int kRoom = 36;  ///< [voxels of the level]
 ///    a level's last sweep each voxel takes the mean of what its neighbours' sources say about its place; at
 ///    the finest level that is readAnalogy's.
 /// @param target   box begins at 0, distances [voxels], wide enough for what is added
-/// @throw Error InvalidOption, Unusable (a pair too small for the levels), Cancelled
+/// @throw Error InvalidOption, ShapeMismatch and BadData (fields that begin elsewhere, differ in size within
+/// a pair or hold NaN), Unusable (a pair too small for the levels), Cancelled
 /// @par Cost    O(voxels near the surface * (samples of a feature + candidates)) a sweep
 /// @par Repeats same bits for any number of threads
 VolumeAnalogyResult makeAnalogy(const std::vector<AnalogyPair>& pairs, const BrickField& target,

@@ -21,8 +21,8 @@ int exitCode(ErrorCode code) noexcept {
     return 1;
 }
 
-void requireOption(bool valid, const std::string& name, const std::string& value, const std::string& range) {
-    if (!valid) throw Error(ErrorCode::InvalidOption, "--" + name + " " + value + ": must be " + range);
+void requireOption(bool valid, const std::string& field, const std::string& value, const std::string& range) {
+    if (!valid) throw Error(ErrorCode::InvalidOption, "`" + field + "` " + value + ": must be " + range);
 }
 
 }  // namespace vdbsynth

@@ -17,8 +17,8 @@ enum class ErrorCode {
     Cancelled       ///< the caller asked for a stop; nothing was returned or written
 };
 
-/// The one exception type of the library. The message is one line that names the file or the option,
-/// says what is wrong and what would be right.
+/// The one exception type of the library. The message is one line that names the file, the input or
+/// the options' field (in backquotes), says what is wrong and what would be right.
 class Error : public std::runtime_error {
 public:
     Error(ErrorCode code, const std::string& message) : std::runtime_error(message), mCode(code) {}
@@ -32,10 +32,11 @@ private:
 /// 130 for Cancelled, 1 for all others.
 int exitCode(ErrorCode code) noexcept;
 
-/// Throws Error InvalidOption "--NAME VALUE: must be RANGE" unless `valid`.
-/// @param name   option name as on the command line, without dashes
+/// Throws Error InvalidOption "`FIELD` VALUE: must be RANGE" unless `valid`. Messages name fields of option
+/// structs in backquotes, so that a program can put its own names for them there, as the command line does.
+/// @param field  name of the options' field, for example longestRun
 /// @param value  the refused value as text
 /// @param range  the allowed range in words, for example "a whole number from 4 to 256"
-void requireOption(bool valid, const std::string& name, const std::string& value, const std::string& range);
+void requireOption(bool valid, const std::string& field, const std::string& value, const std::string& range);
 
 }  // namespace vdbsynth

@@ -3,9 +3,9 @@
 #include "libvdbsynth/base/error.h"
 
 #include <tbb/blocked_range.h>
-#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <atomic>
@@ -50,33 +50,33 @@ void parallelFor(const RunContext& ctx, std::size_t count, std::size_t grain,
         for (std::size_t chunk = 0; chunk < chunks; ++chunk) runChunk(chunk);
         return;
     }
-    const ThreadLimit limit(ctx);
     HandOver handOver;
     handOver.give();
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, chunks, 1),
-        [&](const tbb::blocked_range<std::size_t>& range) {
-            handOver.take();
-            // A thread that waits inside a chunk must not begin another one: chunks may be large.
-            tbb::this_task_arena::isolate([&] {
-                for (auto chunk = range.begin(); chunk != range.end(); ++chunk) runChunk(chunk);
-            });
-            handOver.give();
-        },
-        tbb::simple_partitioner());
+    // Chunks of a caller's group that is cancelled would be left out without a word.
+    tbb::task_group_context apart(tbb::task_group_context::isolated);
+    const auto runRange = [&](const tbb::blocked_range<std::size_t>& range) {
+        handOver.take();
+        // A thread that waits inside a chunk must not begin another one: chunks may be large.
+        tbb::this_task_arena::isolate([&] {
+            for (auto chunk = range.begin(); chunk != range.end(); ++chunk) runChunk(chunk);
+        });
+        handOver.give();
+    };
+    runWithThreads(ctx, [&] {
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chunks, 1), runRange, tbb::simple_partitioner(),
+                          apart);
+    });
     handOver.take();
 }
 
-struct ThreadLimit::Impl {
-    std::unique_ptr<tbb::global_control> control;
-};
-
-ThreadLimit::ThreadLimit(const RunContext& ctx) : mImpl(new Impl) {
-    if (ctx.threads > 0)
-        mImpl->control = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                               std::size_t(ctx.threads));
+void runWithThreads(const RunContext& ctx, const std::function<void()>& work) {
+    if (ctx.threads <= 0 || tbb::this_task_arena::max_concurrency() <= ctx.threads) {
+        tbb::this_task_arena::isolate(work);
+        return;
+    }
+    // One place is kept for the calling thread, so that it never has to hand the work to another.
+    tbb::task_arena arena(ctx.threads, /* reserved_for_masters= */ 1);
+    arena.execute(work);
 }
-
-ThreadLimit::~ThreadLimit() = default;
 
 }  // namespace vdbsynth

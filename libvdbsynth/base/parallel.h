@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <functional>
-#include <memory>
+#include <optional>
+#include <type_traits>
+#include <utility>
 
 namespace vdbsynth {
 
@@ -16,17 +18,23 @@ namespace vdbsynth {
 void parallelFor(const RunContext& ctx, std::size_t count, std::size_t grain,
                  const std::function<void(std::size_t begin, std::size_t end)>& body);
 
-/// Holds the process to the context's number of threads (also inside OpenVDB) while it lives.
-class ThreadLimit {
-public:
-    explicit ThreadLimit(const RunContext& ctx);
-    ~ThreadLimit();
-    ThreadLimit(const ThreadLimit&) = delete;
-    ThreadLimit& operator=(const ThreadLimit&) = delete;
+/// Runs `work` on the calling thread and its parallel loops, OpenVDB's among them, on at most ctx.threads
+/// threads. Other loops of the process keep theirs. With 0, or where the caller's own TBB arena has no more
+/// threads than that, they run on the threads of that arena, so nested calls cost nothing. A thread that
+/// waits for these loops takes up no other work of the caller's meanwhile.
+/// @throw whatever `work` throws
+void runWithThreads(const RunContext& ctx, const std::function<void()>& work);
 
-private:
-    struct Impl;
-    std::unique_ptr<Impl> mImpl;
-};
+/// runWithThreads for work with a result.
+template <typename Work>
+auto withThreads(const RunContext& ctx, Work&& work) -> decltype(work()) {
+    if constexpr (std::is_void_v<decltype(work())>) {
+        runWithThreads(ctx, [&] { work(); });
+    } else {
+        std::optional<decltype(work())> result;
+        runWithThreads(ctx, [&] { result.emplace(work()); });
+        return std::move(*result);
+    }
+}
 
 }  // namespace vdbsynth

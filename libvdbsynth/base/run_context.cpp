@@ -20,7 +20,7 @@ void message(const RunContext& ctx, MessageLevel level, const std::string& text)
 void requireMemory(const RunContext& ctx, double bytes, const std::string& what, const std::string& hint) {
     if (ctx.maxMemory == 0 || bytes <= double(ctx.maxMemory)) return;
     char text[96];
-    std::snprintf(text, sizeof text, " needs about %.3g GB, over --max-memory %.3g GB; ", bytes / 1e9,
+    std::snprintf(text, sizeof text, " needs about %.3g GB, over `maxMemory` %.3g GB; ", bytes / 1e9,
                   double(ctx.maxMemory) / 1e9);
     throw Error(ErrorCode::Memory, what + text + hint);
 }

@@ -30,8 +30,11 @@ struct RunContext {
     std::function<void(MessageLevel, const std::string&)> onMessage;
     /// Set to true from any thread to stop; polled once per chunk of parallel work.
     const std::atomic<bool>* cancel = nullptr;
-    std::uint64_t seed = 0;       ///< all randomness derives from (seed, element)
-    int threads = 0;              ///< 0 means one per core; results do not depend on it
+    std::uint64_t seed = 0;  ///< all randomness derives from (seed, element)
+    /// Of this call only, not of the process; 0 means all that the caller's TBB arena has: one per core
+    /// unless the caller says otherwise. Results do not depend on it. Contexts of calls at one time may
+    /// differ.
+    int threads = 0;
     std::uint64_t maxMemory = 0;  ///< bytes that one run may plan to use; 0 means no limit
 };
 
@@ -40,7 +43,7 @@ void throwIfCancelled(const RunContext& ctx);
 
 void message(const RunContext& ctx, MessageLevel level, const std::string& text);
 
-/// @throw Error Memory "WHAT needs X GB, over --max-memory Y GB: HINT" if `bytes` is over ctx.maxMemory
+/// @throw Error Memory "WHAT needs X GB, over `maxMemory` Y GB: HINT" if `bytes` is over ctx.maxMemory
 void requireMemory(const RunContext& ctx, double bytes, const std::string& what, const std::string& hint);
 
 /// Reports one stage of work from the calling thread; the destructor does not report.

@@ -4,6 +4,7 @@
 #include "libvdbsynth/base/parallel.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -149,6 +150,30 @@ bool BrickField::constantIn(const IndexBox& region, float& value) const {
 
 std::size_t BrickField::memoryBytes() const {
     return mSlots.size() * (sizeof(std::int32_t) + sizeof(float)) + mSamples.size() * sizeof(float);
+}
+
+bool BrickField::finite() const {
+    const auto fine = [](float value) { return std::isfinite(value); };
+    // Constants of stored bricks are not read by anything.
+    for (std::size_t brick = 0; brick < mSlots.size(); ++brick)
+        if (mSlots[brick] < 0 && !fine(mConstants[brick])) return false;
+    return std::all_of(mSamples.begin(), mSamples.end(), fine);
+}
+
+void requireField(const BrickField* field, const std::string& what, const Index3& size) {
+    if (!field) throw Error(ErrorCode::InvalidOption, what + ": is null; a field is needed");
+    const IndexBox& box = field->box();
+    if (box.empty()) throw Error(ErrorCode::InvalidOption, what + ": has no voxels");
+    const auto text = [](const Index3& p) {
+        return std::to_string(p.x) + "," + std::to_string(p.y) + "," + std::to_string(p.z);
+    };
+    if (box.min != Index3{0, 0, 0})
+        throw Error(ErrorCode::ShapeMismatch,
+                    what + ": its box begins at " + text(box.min) + "; it must begin at 0,0,0");
+    if (size != Index3{0, 0, 0} && box.size() != size)
+        throw Error(ErrorCode::ShapeMismatch,
+                    what + ": has " + text(box.size()) + " voxels, not " + text(size));
+    if (!field->finite()) throw Error(ErrorCode::BadData, what + ": holds NaN or infinite values");
 }
 
 }  // namespace vdbsynth

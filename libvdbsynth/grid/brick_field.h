@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace vdbsynth {
@@ -50,6 +51,9 @@ public:
     /// True, with the value, if all bricks that touch the box share one value.
     bool constantIn(const IndexBox& region, float& value) const;
 
+    /// True if no sample is NaN or infinite; those beyond the box count too.
+    bool finite() const;
+
     std::size_t brickCount() const { return mSlots.size(); }
     std::size_t storedBricks() const { return mSamples.size() / kSamples; }
     std::size_t memoryBytes() const;
@@ -70,5 +74,11 @@ private:
     std::vector<float> mConstants;     // per brick: its value where constant
     std::vector<float> mSamples;       // kSamples floats a stored brick
 };
+
+/// What most functions demand of a field.
+/// @param what  begins the message, for example "`exemplars` 2" or "the target"
+/// @throw Error InvalidOption (null, or an empty box), ShapeMismatch (its box does not begin at 0,0,0, or has
+/// another size than `size`, if that is not 0,0,0), BadData (NaN or infinite samples)
+void requireField(const BrickField* field, const std::string& what, const Index3& size = {0, 0, 0});
 
 }  // namespace vdbsynth

@@ -1,4 +1,5 @@
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/grid/crossing_field.h"
 #include "libvdbsynth/grid/raster_field.h"
@@ -154,8 +155,22 @@ Axes axesOf(HeightPlane plane) {
 
 }  // namespace
 
+void validate(const HeightOptions& options) {
+    const auto length = [](double value, const char* field) {
+        requireOption(value >= 0 && value < 1e30, field, roundedText(value, 6),
+                      "above 0 (world), or 0 for the default");
+    };
+    length(options.voxelSize, "voxelSize");
+    length(options.pixelSize, "pixelSize");
+    length(options.height, "height");
+    length(options.base, "base");
+    requireOption(options.resolution == 0 || (options.resolution >= 2 && options.resolution <= 100000),
+                  "resolution", std::to_string(options.resolution), "a whole number from 2 to 100000");
+}
+
 RasterField heightField(const std::string& name, const Raster& given, const HeightOptions& options,
                         const RunContext& ctx) {
+    validate(options);
     const Raster raster = luminance(given);
     const RasterRange range = rangeOf(raster);
     if (raster.size.z != 1)
@@ -174,10 +189,10 @@ RasterField heightField(const std::string& name, const Raster& given, const Heig
           std::abs(slab.high / slab.voxel) < 1e8))
         throw Error(ErrorCode::Unusable, name + ": heights from " + rounded(slab.low) + " to " +
                                              rounded(slab.high) + " in voxels of " + rounded(slab.voxel) +
-                                             " need over a million a side; use larger ones, or --height");
+                                             " need over a million a side; use larger ones, or `height`");
     requireMemory(ctx, columns * rows * 8 * (60 + 0.016 * tall) + 2 * (columns + rows) * tall * 800,
                   name + " in voxels of " + rounded(slab.voxel),
-                  "use a larger --voxel-size or a smaller --resolution");
+                  "use a larger `voxelSize` or a smaller `resolution`");
     Stage stage(ctx, "heights to field", 1);
     const HeightMap map =
         resampled(fromRaster(raster), slab.voxel / slab.pixelX, slab.voxel / slab.pixelY, ctx);
@@ -220,7 +235,7 @@ RasterField heightField(const std::string& name, const Raster& given, const Heig
                          (slab.pixelX == slab.pixelY ? "" : " x " + rounded(slab.pixelY)) + ", voxels of " +
                          rounded(slab.voxel) + " (world" +
                          (raster.unit.empty() || options.pixelSize > 0 ? "" : ", in " + raster.unit) + ")" +
-                         (options.height > 0 ? "" : "; --height sets how tall it is");
+                         (options.height > 0 ? "" : "; `height` sets how tall it is");
     if (range.missing > 0)
         result.description += "; " + std::to_string(range.missing) + " pixels without data are holes";
     stage.advance();

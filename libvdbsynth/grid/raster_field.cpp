@@ -2,6 +2,7 @@
 #include "libvdbsynth/grid/raster_field.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/grid/crossing_field.h"
 
 #include <algorithm>
@@ -117,7 +118,7 @@ BrickField labelField(const std::string& name, const Raster& raster, const Raste
                                              "; labels over 16777215 cannot be told apart, renumber them");
     if (std::none_of(raster.values.begin(), raster.values.end(),
                      [&](float value) { return isOneOf(labels, value); }))
-        throw Error(ErrorCode::Unusable, "--labels: no sample of " + name +
+        throw Error(ErrorCode::Unusable, "`labels`: no sample of " + name +
                                              " has one of them; its values run from " +
                                              rounded(range.minimum) + " to " + rounded(range.maximum));
     const IndexBox box = IndexBox::fromSize(raster.size).expanded(kRasterFieldMargin);
@@ -172,21 +173,33 @@ std::vector<LabelRange> chooseLabels(const std::string& name, const RasterRange&
                                      const VolumeOptions& options, std::string& description) {
     if (!options.labels.empty()) return options.labels;
     if (range.distinct.size() == 2) {
-        description = "two values, of which " + rounded(range.maximum) + " is solid; --labels says otherwise";
+        description = "two values, of which " + rounded(range.maximum) + " is solid; `labels` says otherwise";
         return {{range.maximum, range.maximum}};
     }
     throw Error(
         ErrorCode::Unusable,
-        name + ": say what of it is solid with --threshold VALUE or --labels LIST; its values run from " +
+        name + ": say what of it is solid with `threshold` VALUE or `labels` LIST; its values run from " +
             rounded(range.minimum) + " to " + rounded(range.maximum));
 }
 
 }  // namespace
 
+void validate(const VolumeOptions& options) {
+    if (options.threshold && !options.labels.empty())
+        throw Error(ErrorCode::InvalidOption, "`threshold` and `labels`: give one of them");
+    requireOption(!options.threshold || std::isfinite(*options.threshold), "threshold",
+                  options.threshold ? exactText(*options.threshold) : "", "a number");
+    for (const LabelRange& range : options.labels)
+        requireOption(range.first <= range.second, "labels",
+                      exactText(range.first) + ".." + exactText(range.second),
+                      "a smaller and a larger value");
+    requireOption(options.pixelSize >= 0 && options.pixelSize < 1e30, "pixelSize",
+                  roundedText(options.pixelSize, 6), "above 0 (world), or 0 for the file's");
+}
+
 RasterField volumeField(const std::string& name, const Raster& given, const VolumeOptions& options,
                         const RunContext& ctx) {
-    if (options.threshold && !options.labels.empty())
-        throw Error(ErrorCode::InvalidOption, "--threshold and --labels: give one of them");
+    validate(options);
     requireMemory(ctx, double(given.sampleCount()) * 12, name, "crop or shrink it first");
     Stage stage(ctx, "volume to field", 1);
     const Raster colourless = given.channels == 1 ? Raster() : luminance(given);
@@ -200,7 +213,7 @@ RasterField volumeField(const std::string& name, const Raster& given, const Volu
     if (options.threshold) {
         const double t = *options.threshold;
         if (!(t >= range.minimum && t < range.maximum))
-            throw Error(ErrorCode::Unusable, "--threshold " + rounded(t) +
+            throw Error(ErrorCode::Unusable, "`threshold` " + rounded(t) +
                                                  ": no surface there; the values of " + name + " run from " +
                                                  rounded(range.minimum) + " to " + rounded(range.maximum));
         result.field = thresholdField(raster, range, t, ctx);

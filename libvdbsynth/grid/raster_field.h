@@ -37,6 +37,9 @@ struct HeightOptions {
     HeightPlane plane = HeightPlane::XY;
 };
 
+/// @throw Error InvalidOption (a field out of its range)
+void validate(const HeightOptions& options);
+
 /// A height field as a slab. The zero level lies on the bilinear surface through the heights at the voxels'
 /// centres. At other voxel sizes heights are averaged (tent filter) or interpolated (Catmull-Rom). Pixels
 /// without data are holes through the slab. Black, or a real height of 0, is 0 along the height's axis.
@@ -66,6 +69,9 @@ struct VolumeOptions {
     std::vector<LabelRange> labels;   ///< solid where the value is one of these
     double pixelSize = 0;  ///< [world] of the smallest side of a sample's cell; 0: the file's, else 1
 };
+
+/// @throw Error InvalidOption (a field out of its range, both a threshold and labels)
+void validate(const VolumeOptions& options);
 
 /// A volume as a field at its own resolution; cells that are no cubes are resampled (trilinear) to their
 /// smallest side. With a threshold the surface is that of trilinear interpolation. With labels, or for a

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <mutex>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -33,7 +35,7 @@ bool stillRuns(pid_t process) {
     return name == std::string::npos || (line[name + 2] != 'Z' && line[name + 2] != 'X');
 }
 
-// Removes ".NAME.<pid>.tmp" of processes that no longer run.
+// Removes ".NAME.<pid>.tmp" and ".NAME.<pid>-<n>.tmp" of processes that no longer run.
 void removeStale(const std::string& folder, const std::string& name) {
     const std::string prefix = "." + name + ".";
     std::error_code ignored;
@@ -42,13 +44,38 @@ void removeStale(const std::string& folder, const std::string& name) {
         if (found.size() <= prefix.size() + 4 || found.compare(0, prefix.size(), prefix) != 0 ||
             found.compare(found.size() - 4, 4, ".tmp") != 0)
             continue;
-        const std::string digits = found.substr(prefix.size(), found.size() - prefix.size() - 4);
+        const std::string middle = found.substr(prefix.size(), found.size() - prefix.size() - 4);
+        const std::string digits = middle.substr(0, middle.find('-'));
         if (digits.empty() || digits.size() > 9 ||
             digits.find_first_not_of("0123456789") != std::string::npos)
             continue;
         const pid_t process = pid_t(std::stol(digits));
         if (!stillRuns(process)) std::filesystem::remove(entry.path(), ignored);
     }
+}
+
+// Temporaries of this process: two calls at once may write one file, a kept index for example.
+class NamesInUse {
+public:
+    std::string take(const std::string& beginning) {
+        const std::lock_guard<std::mutex> lock(mMutex);
+        std::string name = beginning + ".tmp";
+        for (int n = 2; !mNames.insert(name).second; ++n) name = beginning + "-" + std::to_string(n) + ".tmp";
+        return name;
+    }
+    void giveBack(const std::string& name) {
+        const std::lock_guard<std::mutex> lock(mMutex);
+        mNames.erase(name);
+    }
+
+private:
+    std::mutex mMutex;
+    std::set<std::string> mNames;
+};
+
+NamesInUse& namesInUse() {
+    static NamesInUse names;
+    return names;
 }
 
 void syncToDisk(const std::string& temporary, const std::string& path) {
@@ -67,7 +94,10 @@ OutputSet::OutputSet(std::function<void(const std::string&)> onTemporary)
     : mOnTemporary(std::move(onTemporary)) {}
 
 OutputSet::~OutputSet() {
-    for (const Entry& entry : mEntries) ::unlink(entry.temporary.c_str());
+    for (const Entry& entry : mEntries) {
+        ::unlink(entry.temporary.c_str());
+        namesInUse().giveBack(entry.temporary);
+    }
 }
 
 void OutputSet::reserve(const std::string& path) {
@@ -110,11 +140,16 @@ void OutputSet::open(const std::string& path) {
             throw Error(ErrorCode::InvalidOption,
                         path + ": the same file as " + entry.path + "; named as an output twice");
     removeStale(folder, name);
-    const std::string temporary = folder + "/." + name + "." + std::to_string(::getpid()) + ".tmp";
+    const std::string temporary = namesInUse().take(folder + "/." + name + "." + std::to_string(::getpid()));
     if (mOnTemporary) mOnTemporary(temporary);
     ::unlink(temporary.c_str());
     const int file = ::open(temporary.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_NOFOLLOW | O_CLOEXEC, 0666);
-    if (file < 0) failIo(path, "cannot be written");
+    const int reason = errno;
+    if (file < 0) {
+        namesInUse().giveBack(temporary);
+        errno = reason;
+        failIo(path, "cannot be written");
+    }
     ::close(file);
     mEntries.push_back({path, target, unique, temporary, false});
 }
@@ -132,6 +167,7 @@ void OutputSet::commit() {
         const Entry entry = mEntries.front();
         if (::rename(entry.temporary.c_str(), entry.target.c_str()) != 0)
             failIo(entry.path, "cannot be written");
+        namesInUse().giveBack(entry.temporary);
         mEntries.erase(mEntries.begin());
     }
 }

@@ -13,7 +13,7 @@ bool isRasterPath(const std::string& path);
 /// The extensions of isRasterPath in words, for messages.
 extern const char* const kRasterExtensions;
 
-/// Reads an image or a volume. Sizes are checked against the file's size or --max-memory before anything is
+/// Reads an image or a volume. Sizes are checked against the file's size or `maxMemory` before anything is
 /// allocated.
 /// - png (1 to 16 bits, palettes), jpg, pgm and ppm (ascii or binary, to 16 bits), tif (8 to 64 bits, whole
 /// or float,

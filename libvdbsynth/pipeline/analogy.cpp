@@ -36,7 +36,7 @@ BrickField weights(const AnalogyOptions& options, const IndexBox& box, const ope
     frame.like = &like;
     const bool solid = options.mask->getGridClass() == openvdb::GRID_LEVEL_SET;
     const float border = kMaskBorder * float(voxelSizeOf(like));
-    const BrickField mask = sampledScalar(*options.mask, frame, "--mask", ctx);
+    const BrickField mask = sampledScalar(*options.mask, frame, "`mask`", ctx);
     return BrickField::generate(mask.box(), ctx, [&](const IndexBox& brick, float* samples) {
         mask.readBox(brick.min, brick.size(), samples);
         for (int i = 0; i < BrickField::kSamples; ++i) {
@@ -91,15 +91,8 @@ GridPtr directionGrid(const FrameField& frames, const FieldPlace& place, const I
     return grid;
 }
 
-}  // namespace
-
-AnalogyResult makeAnalogyModel(const std::vector<AnalogyModelPair>& pairs, const LevelSet& target,
-                               const AnalogyOptions& options, const RunContext& ctx) {
-    requireOption(options.scale >= 0.25 && options.scale <= 4, "scale", std::to_string(options.scale),
-                  "from 0.25 to 4");
-    requireOption(options.strength >= 0 && options.strength <= 1, "strength",
-                  std::to_string(options.strength), "from 0 to 1");
-    const ThreadLimit limit(ctx);
+AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const LevelSet& target,
+                          const AnalogyOptions& options, const RunContext& ctx) {
     AnalogyResult result;
     std::vector<PairFields> fields;
     for (const AnalogyModelPair& pair : pairs) {
@@ -119,7 +112,7 @@ AnalogyResult makeAnalogyModel(const std::vector<AnalogyModelPair>& pairs, const
     const CutFaces cut = facesTouched(target);
     const IndexBox box = grown(target.domain, cut, band);
     requireMemory(ctx, double(box.volume()) * 6 + double(activeVoxels(*target.grid)) / 6 * 2 * band * 160,
-                  "the analogy", "use larger voxels, fewer --levels or a smaller --neighbourhood");
+                  "the analogy", "use larger voxels, fewer `levels` or a smaller `half`");
     const auto plain =
         std::make_shared<const BrickField>(widenBand(*target.grid, box, cut, float(band), ctx));
     const FieldPlace place{target.grid.get(), {double(box.min.x), double(box.min.y), double(box.min.z)}, 1};
@@ -156,6 +149,17 @@ AnalogyResult makeAnalogyModel(const std::vector<AnalogyModelPair>& pairs, const
         result.singularities.push_back(place.toWorld(cast<double>(p)));
     result.cut = frames.sweep().cut;
     return result;
+}
+
+}  // namespace
+
+AnalogyResult makeAnalogyModel(const std::vector<AnalogyModelPair>& pairs, const LevelSet& target,
+                               const AnalogyOptions& options, const RunContext& ctx) {
+    requireOption(options.scale >= 0.25 && options.scale <= 4, "scale", std::to_string(options.scale),
+                  "from 0.25 to 4");
+    requireOption(options.strength >= 0 && options.strength <= 1, "strength",
+                  std::to_string(options.strength), "from 0 to 1");
+    return withThreads(ctx, [&] { return madeAnalogy(pairs, target, options, ctx); });
 }
 
 }  // namespace vdbsynth

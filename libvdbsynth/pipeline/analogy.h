@@ -26,11 +26,12 @@ struct DirectionSource {
         Strokes     ///< as `strokes` say, in between diffused
     } kind = Kind::Automatic;
     Vec3d axis{0, 0, 1};  ///< [world]
-    GridPtr grid;
+    GridConstPtr grid;
     std::vector<Stroke> strokes;
 };
 
-/// Metadata of a level set that says which way its texture runs, as --direction has it; `make` writes it.
+/// Metadata of a level set that says which way its texture runs, as parseDirection takes it; `make` writes
+/// it.
 inline constexpr const char* kDirectionKey = "vdbsynth:direction";
 
 /// `axis:x`, `axis:-z`, `around:y`, `radial`, `curvature`.
@@ -43,7 +44,7 @@ struct AnalogyOptions {
     DirectionSource exemplarDirection;  ///< over the plain model of each pair
     double scale = 1;              ///< of the texture, 0.25..4: 2 is twice as large in the target's voxels
     double strength = 1;           ///< 0..1: how far the target becomes the result
-    GridPtr mask;                  ///< 0..1 over the target, by which strength is multiplied; null: 1
+    GridConstPtr mask;             ///< 0..1 over the target, by which strength is multiplied; null: 1
     float halfWidth = kHalfWidth;  ///< [voxels] of the result
     bool keepDirections = false;   ///< fills AnalogyResult::directions
 };

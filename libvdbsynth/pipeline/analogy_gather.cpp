@@ -21,7 +21,7 @@ void requireOnePlace(const AnalogyModelPair& pair) {
                     "the two models of the pair must have the same voxels in the same place: voxel sizes " +
                         std::to_string(voxelSizeOf(*pair.plain->grid)) + " and " +
                         std::to_string(voxelSizeOf(*pair.textured->grid)) +
-                        "; convert both with the same --voxel-size");
+                        "; convert both with the same `voxelSize`");
 }
 
 BrickField scaled(const BrickField& field, double scale, const RunContext& ctx) {

@@ -195,20 +195,10 @@ bool takeSourceMap(const std::vector<GridPtr>& grids, CompareInput& input) {
     return true;
 }
 
-Comparison compareModels(const CompareInput& reference, const std::vector<CompareInput>& others,
-                         const CompareOptions& options, const RunContext& ctx) {
-    requireOption(options.fresh >= 2 && options.fresh <= 100, "fresh", std::to_string(options.fresh),
-                  "a whole number from 2 to 100");
-    if (options.process && !reference.model.domainRecorded)
-        throw Error(ErrorCode::Unusable, reference.name +
-                                             ": has no recorded domain, so --process cannot "
-                                             "tell what size to make; crop it to a box first");
-    const Index3 size = reference.model.domain.size();
-    if (options.process &&
-        (std::min({size.x, size.y, size.z}) < 8 || std::max({size.x, size.y, size.z}) > 4096))
-        throw Error(ErrorCode::Unusable,
-                    reference.name + ": --process makes domains of 8 to 4096 voxels a side only");
-    const ThreadLimit limit(ctx);
+namespace {
+
+Comparison compared(const CompareInput& reference, const std::vector<CompareInput>& others,
+                    const CompareOptions& options, const RunContext& ctx) {
     Comparison result;
     const int coarsening = thicknessCoarsening(reference, others);
     const PreparedModel to = prepareModel(reference.name, reference.model, coarsening, ctx);
@@ -238,6 +228,24 @@ Comparison compareModels(const CompareInput& reference, const std::vector<Compar
     result.reference.crumbs = countCrumbs(to.model, result.reference.topology, result.crumbLimit);
     if (options.process) result.yardsticks = yardsticksOf(reference, to, result, projections, options, ctx);
     return result;
+}
+
+}  // namespace
+
+Comparison compareModels(const CompareInput& reference, const std::vector<CompareInput>& others,
+                         const CompareOptions& options, const RunContext& ctx) {
+    requireOption(options.fresh >= 2 && options.fresh <= 100, "fresh", std::to_string(options.fresh),
+                  "a whole number from 2 to 100");
+    if (options.process && !reference.model.domainRecorded)
+        throw Error(ErrorCode::Unusable, reference.name +
+                                             ": has no recorded domain, so `process` cannot "
+                                             "tell what size to make; crop it to a box first");
+    const Index3 size = reference.model.domain.size();
+    if (options.process &&
+        (std::min({size.x, size.y, size.z}) < 8 || std::max({size.x, size.y, size.z}) > 4096))
+        throw Error(ErrorCode::Unusable,
+                    reference.name + ": `process` makes domains of 8 to 4096 voxels a side only");
+    return withThreads(ctx, [&] { return compared(reference, others, options, ctx); });
 }
 
 }  // namespace vdbsynth

@@ -61,7 +61,7 @@ Reader scalarReader(const openvdb::GridBase& grid, bool smooth, const std::strin
 Reader rotationReader(const openvdb::GridBase& grid) {
     Reader reader;
     if (grid.apply<Vectors>([&](const auto& typed) { reader = readerOf(typed, false); })) return reader;
-    return scalarReader(grid, false, "--rotation-map");
+    return scalarReader(grid, false, "`rotationMap`");
 }
 
 openvdb::Vec3d worldOf(const ControlFrame& frame, Index3 voxel) {
@@ -79,7 +79,7 @@ Index3 cellsOf(const IndexBox& box) {
 }
 
 [[noreturn]] void refuse(const char* option, double value, const Index3& voxel, const std::string& range) {
-    throw Error(ErrorCode::Unusable, std::string("--") + option + ": " + std::to_string(value) +
+    throw Error(ErrorCode::Unusable, std::string("`") + option + "`: " + std::to_string(value) +
                                          " at voxel " + std::to_string(voxel.x) + "," +
                                          std::to_string(voxel.y) + "," + std::to_string(voxel.z) +
                                          " of the result; give " + range);
@@ -97,19 +97,20 @@ struct Readers {
             const double value = which(world).value.z;
             const double number = insideIsSecond ? (value < 0 ? 1 : 0) : std::round(value);
             if (!(number >= 0 && number < exemplars))
-                refuse("which", value, voxel, "numbers of exemplars, 0 to " + std::to_string(exemplars - 1));
+                refuse("exemplarMap", value, voxel,
+                       "numbers of exemplars, 0 to " + std::to_string(exemplars - 1));
             want.exemplar = std::int32_t(number);
         }
         if (rotation) {
             want.rotation = rotation(world).value;
             const double angle = length(want.rotation);
-            if (!(angle <= 100)) refuse("rotation-map", angle, voxel, "angles up to 100 radians");
+            if (!(angle <= 100)) refuse("rotationMap", angle, voxel, "angles up to 100 radians");
         }
         if (scale) {
             const Reading reading = scale(world);
             want.scale = !reading.active && reading.value.z == 0 ? 1 : reading.value.z;
             if (!(want.scale >= 0.25 && want.scale <= 4))
-                refuse("scale-map", want.scale, voxel, "scales from 0.25 to 4");
+                refuse("scaleMap", want.scale, voxel, "scales from 0.25 to 4");
         }
         return want;
     }
@@ -117,7 +118,7 @@ struct Readers {
 
 }  // namespace
 
-GridPtr asControl(const FloatGridPtr& grid) {
+GridConstPtr asControl(const FloatGridConstPtr& grid) {
     return grid;
 }
 
@@ -139,9 +140,9 @@ std::vector<WantedVariant> wantedVariants(const openvdb::GridBase* which, const 
                                           const ControlFrame& frame, const RunContext& ctx) {
     const auto readers = [&] {
         Readers made;
-        if (which) made.which = scalarReader(*which, false, "--which");
+        if (which) made.which = scalarReader(*which, false, "`exemplarMap`");
         if (rotation) made.rotation = rotationReader(*rotation);
-        if (scale) made.scale = scalarReader(*scale, false, "--scale-map");
+        if (scale) made.scale = scalarReader(*scale, false, "`scaleMap`");
         made.insideIsSecond = which && which->getGridClass() == openvdb::GRID_LEVEL_SET;
         made.exemplars = exemplars;
         return made;

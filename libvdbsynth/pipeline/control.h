@@ -25,7 +25,7 @@ BrickField sampledScalar(const openvdb::GridBase& grid, const ControlFrame& fram
                          const RunContext& ctx = {});
 
 /// A level set's grid as a control, for callers without OpenVDB's headers.
-GridPtr asControl(const FloatGridPtr& grid);
+GridConstPtr asControl(const FloatGridConstPtr& grid);
 
 /// What control grids ask for at every fourth voxel of a frame, x slowest. A level set among the numbers of
 /// exemplars means the second inside and the first outside.

@@ -39,11 +39,8 @@ GridPtr clipped(const GridPtr& grid, const openvdb::FloatGrid& model, const Inde
     return result;
 }
 
-}  // namespace
-
-LevelSet cropModel(const LevelSet& model, const IndexBox& box, const RunContext& ctx) {
-    const ThreadLimit limit(ctx);
-    requireMemory(ctx, double(box.volume()) * 8.0 / 512, "a box of " + boxText(box), "use a smaller --box");
+LevelSet cropped(const LevelSet& model, const IndexBox& box, const RunContext& ctx) {
+    requireMemory(ctx, double(box.volume()) * 8.0 / 512, "a box of " + boxText(box), "use a smaller `box`");
     const double voxel = voxelSizeOf(*model.grid);
     const float band = std::max(1.5f, std::min(kHalfWidth, float(halfWidthOf(*model.grid))));
     const BrickField field = gatherBricks(*model.grid, box, float(1 / voxel), band, ctx);
@@ -53,7 +50,7 @@ LevelSet cropModel(const LevelSet& model, const IndexBox& box, const RunContext&
     if (grid->activeVoxelCount() == 0)
         throw Error(
             ErrorCode::EmptyInput,
-            "--box " + boxText(box) + ": no surface in it; the model's domain is " + boxText(model.domain));
+            "`box` " + boxText(box) + ": no surface in it; the model's domain is " + boxText(model.domain));
     LevelSet result;
     result.grid = grid;
     result.domain = box;
@@ -62,6 +59,12 @@ LevelSet cropModel(const LevelSet& model, const IndexBox& box, const RunContext&
     for (const GridPtr& carried : model.carried)
         result.carried.push_back(clipped(carried, *model.grid, box, ctx));
     return result;
+}
+
+}  // namespace
+
+LevelSet cropModel(const LevelSet& model, const IndexBox& box, const RunContext& ctx) {
+    return withThreads(ctx, [&] { return cropped(model, box, ctx); });
 }
 
 }  // namespace vdbsynth

@@ -152,11 +152,12 @@ FrameField framesOf(std::shared_ptr<const BrickField> distance, const FieldPlace
         directions = directionField(shell, givenDirections(shell, place, source, what, ctx), ctx);
     } catch (const Error& error) {
         if (error.code() != ErrorCode::Unusable) throw;
-        throw Error(ErrorCode::Unusable,
-                    what + ": " +
-                        (source.kind == DirectionSource::Kind::Automatic
-                             ? "its curvature tells no direction; say one, --direction axis:x for example"
-                             : error.what()));
+        throw Error(
+            ErrorCode::Unusable,
+            what + ": " +
+                (source.kind == DirectionSource::Kind::Automatic
+                     ? "its curvature tells no direction; say one with `direction`, along an axis for example"
+                     : error.what()));
     }
     stage.advance();
     SweepDistance sweep = sweepDistance(shell, directions.tangent, ctx);

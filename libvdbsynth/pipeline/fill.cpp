@@ -133,16 +133,15 @@ LevelSet boxHole(const LevelSet& partial, const IndexBox& box, const RunContext&
 LevelSet holesAtOpenEdges(const LevelSet& partial, const RunContext& ctx) {
     if (!partial.source)
         throw Error(ErrorCode::Unusable,
-                    "--hole auto: needs a mesh, whose open edges say where the holes are; give "
-                    "--hole a model or a box");
+                    "`hole`: needs a mesh, whose open edges say where the holes are; give a model or a box");
     Mesh welded = *partial.source;
     weldVertices(welded);
     if (summarize(welded).openEdges == 0)
-        throw Error(ErrorCode::Unusable, "--hole auto: the mesh has no open edges, so no holes");
+        throw Error(ErrorCode::Unusable, "`hole`: the mesh has no open edges, so no holes");
     const std::vector<Vec3f> sheets = closingSheets(partial, ctx);
     if (sheets.empty())
         throw Error(ErrorCode::Unusable,
-                    "--hole auto: all holes of the mesh are smaller than two voxels and closed "
+                    "`hole`: all holes of the mesh are smaller than two voxels and closed "
                     "already; use smaller voxels to fill them");
     IndexBox box;
     for (const Vec3f& p : sheets)
@@ -162,9 +161,10 @@ LevelSet holesAtOpenEdges(const LevelSet& partial, const RunContext& ctx) {
     });
 }
 
-FillResult fillHoles(const LevelSet& partial, const LevelSet& hole, const LevelSet* exemplar,
-                     const FillOptions& options, const RunContext& ctx) {
-    const ThreadLimit limit(ctx);
+namespace {
+
+FillResult filledHoles(const LevelSet& partial, const LevelSet& hole, const LevelSet* exemplar,
+                       const FillOptions& options, const RunContext& ctx) {
     SourceMap map;
     map.method = MapMethod::Fill;
     map.hole = holeOf(*inVoxelsOf(*partial.grid, hole), ctx);
@@ -223,6 +223,13 @@ FillResult fillHoles(const LevelSet& partial, const LevelSet& hole, const LevelS
     result.model = fillThroughMap(map, around, filled.field, partial, *holeGrid, from, ctx);
     result.map = std::move(map);
     return result;
+}
+
+}  // namespace
+
+FillResult fillHoles(const LevelSet& partial, const LevelSet& hole, const LevelSet* exemplar,
+                     const FillOptions& options, const RunContext& ctx) {
+    return withThreads(ctx, [&] { return filledHoles(partial, hole, exemplar, options, ctx); });
 }
 
 }  // namespace vdbsynth

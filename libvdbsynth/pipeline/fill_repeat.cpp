@@ -69,7 +69,7 @@ Surroundings surroundingsOf(const LevelSet& partial, const openvdb::FloatGrid& h
         box = box.intersection(partial.domain);
         if (box.empty())
             throw Error(ErrorCode::Unusable,
-                        "--hole: lies outside the model's domain " + boxText(partial.domain));
+                        "`hole`: lies outside the model's domain " + boxText(partial.domain));
         for (int axis = 0; axis < 3; ++axis) {
             around.cut[std::size_t(2 * axis)] = box.min[axis] == partial.domain.min[axis];
             around.cut[std::size_t(2 * axis + 1)] = box.max[axis] == partial.domain.max[axis];

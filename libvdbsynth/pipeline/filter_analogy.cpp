@@ -64,15 +64,8 @@ GridPtr gridOf(const BrickField& field, const IndexBox& box, const openvdb::Floa
     return grid;
 }
 
-}  // namespace
-
-bool isGridOfNumbers(const FloatGridPtr& grid) {
-    return grid->getGridClass() != openvdb::GRID_LEVEL_SET;
-}
-
-FilterGridResult makeFilteredGrid(const std::vector<FilterGridPair>& pairs, const FloatGridPtr& target,
-                                  const FilterAnalogyOptions& options, const RunContext& ctx) {
-    const ThreadLimit limit(ctx);
+FilterGridResult filtered(const std::vector<FilterGridPair>& pairs, const FloatGridConstPtr& target,
+                          const FilterAnalogyOptions& options, const RunContext& ctx) {
     const int reach = filterReach(options) + BrickField::kSide;
     std::vector<BrickField> fields;
     for (const FilterGridPair& pair : pairs) {
@@ -98,6 +91,17 @@ FilterGridResult makeFilteredGrid(const std::vector<FilterGridPair>& pairs, cons
     const FilterAnalogyResult made =
         makeFilterAnalogy(given, gatherBricks(*target, box, 1, kAny, ctx), options, ctx);
     return {gridOf(made.after, box, *target), made.stats};
+}
+
+}  // namespace
+
+bool isGridOfNumbers(const FloatGridConstPtr& grid) {
+    return grid->getGridClass() != openvdb::GRID_LEVEL_SET;
+}
+
+FilterGridResult makeFilteredGrid(const std::vector<FilterGridPair>& pairs, const FloatGridConstPtr& target,
+                                  const FilterAnalogyOptions& options, const RunContext& ctx) {
+    return withThreads(ctx, [&] { return filtered(pairs, target, options, ctx); });
 }
 
 }  // namespace vdbsynth

@@ -9,7 +9,7 @@ namespace vdbsynth {
 
 /// Grids of numbers, such as densities, before and after a filter, in the same voxels.
 struct FilterGridPair {
-    FloatGridPtr before, after;
+    FloatGridConstPtr before, after;
 };
 
 struct FilterGridResult {
@@ -25,10 +25,10 @@ struct FilterGridResult {
 /// voxel), BadData (a value that is no number), Unusable (too little to learn from), Memory, Cancelled
 /// @par Cost    see makeFilterAnalogy; memory about 20 bytes a voxel of the active box
 /// @par Repeats same bits for any number of threads
-FilterGridResult makeFilteredGrid(const std::vector<FilterGridPair>& pairs, const FloatGridPtr& target,
+FilterGridResult makeFilteredGrid(const std::vector<FilterGridPair>& pairs, const FloatGridConstPtr& target,
                                   const FilterAnalogyOptions& options, const RunContext& ctx = {});
 
 /// True if a grid holds numbers that are no distances.
-bool isGridOfNumbers(const FloatGridPtr& grid);
+bool isGridOfNumbers(const FloatGridConstPtr& grid);
 
 }  // namespace vdbsynth

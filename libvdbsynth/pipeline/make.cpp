@@ -13,19 +13,15 @@ namespace vdbsynth {
 namespace {
 
 void requireVoxelSize(double voxelSize) {
-    requireOption(voxelSize > 0 && voxelSize < 1e30, "voxel-size", std::to_string(voxelSize),
+    requireOption(voxelSize > 0 && voxelSize < 1e30, "voxelSize", std::to_string(voxelSize),
                   "above 0 (world)");
 }
 
-}  // namespace
-
-ModelPair makePair(const MakeOptions& options, const RunContext& ctx) {
-    requireVoxelSize(options.voxelSize);
-    const ThreadLimit limit(ctx);
+ModelPair pairOf(const MakeOptions& options, const RunContext& ctx) {
     const AnalogyPairFields made = makeAnalogyPair(options.exemplar, ctx);
     const auto model = [&](const ExemplarField& field) {
         return modelFromField(field.field, kExemplarLimit, field.exact, field.domain, options.voxelSize,
-                              "make " + options.exemplar.kind, "use a larger --resolution or another --seed",
+                              "make " + options.exemplar.kind, "use a larger `resolution` or another `seed`",
                               ctx);
     };
     ModelPair pair{model(made.plain), model(made.textured)};
@@ -34,12 +30,22 @@ ModelPair makePair(const MakeOptions& options, const RunContext& ctx) {
     return pair;
 }
 
-LevelSet makeModel(const MakeOptions& options, const RunContext& ctx) {
-    requireVoxelSize(options.voxelSize);
-    const ThreadLimit limit(ctx);
+LevelSet modelOf(const MakeOptions& options, const RunContext& ctx) {
     const ExemplarField made = makeExemplar(options.exemplar, ctx);
     return modelFromField(made.field, kExemplarLimit, made.exact, made.domain, options.voxelSize,
-                          "make " + options.exemplar.kind, "use a larger --size or another --seed", ctx);
+                          "make " + options.exemplar.kind, "use a larger `size` or another `seed`", ctx);
+}
+
+}  // namespace
+
+ModelPair makePair(const MakeOptions& options, const RunContext& ctx) {
+    requireVoxelSize(options.voxelSize);
+    return withThreads(ctx, [&] { return pairOf(options, ctx); });
+}
+
+LevelSet makeModel(const MakeOptions& options, const RunContext& ctx) {
+    requireVoxelSize(options.voxelSize);
+    return withThreads(ctx, [&] { return modelOf(options, ctx); });
 }
 
 }  // namespace vdbsynth

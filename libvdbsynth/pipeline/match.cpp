@@ -29,22 +29,15 @@ void judge(const std::vector<BlockMatch>& exact, MatchResult& result) {
     result.recall = found / double(exact.size());
 }
 
-}  // namespace
-
-MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const MatchOptions& options,
-                       const RunContext& ctx) {
-    requireOption(options.block >= 4 && options.block <= 256, "block", std::to_string(options.block),
-                  "a whole number from 4 to 256");
-    requireOption(options.count >= 1 && options.count <= 100000, "count", std::to_string(options.count),
-                  "a whole number from 1 to 100000");
-    const ThreadLimit limit(ctx);
+MatchResult matched(const LevelSet& exemplar, const LevelSet& query, const MatchOptions& options,
+                    const RunContext& ctx) {
     blockPositions(BrickField(IndexBox::fromSize(exemplar.domain.size()), 0.f),
                    options.block);  // refuses a block larger than the domain
     if (std::abs(voxelSizeOf(*exemplar.grid) - voxelSizeOf(*query.grid)) > 1e-5 * voxelSizeOf(*exemplar.grid))
         throw Error(ErrorCode::ShapeMismatch,
                     "the query's voxel size " + std::to_string(voxelSizeOf(*query.grid)) +
                         " is not the exemplar's " + std::to_string(voxelSizeOf(*exemplar.grid)) +
-                        "; convert one of them with --voxel-size");
+                        "; convert one of them with `voxelSize`");
     const float band = std::max(8.f, float(options.block) / 2);
     const auto field = std::make_shared<const BrickField>(
         widenBand(*exemplar.grid, exemplar.domain, facesOf(exemplar), band, ctx));
@@ -53,7 +46,7 @@ MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const Ma
     const IndexBox box = IndexBox::cube(options.at, options.block);
     if (query.domain.intersection(box).empty())
         throw Error(ErrorCode::Unusable,
-                    "--at " + std::to_string(options.at.x) + "," + std::to_string(options.at.y) + "," +
+                    "`at` " + std::to_string(options.at.x) + "," + std::to_string(options.at.y) + "," +
                         std::to_string(options.at.z) + ": the block lies outside the query's domain " +
                         boxText(query.domain));
     IndexBox reach = query.domain;
@@ -81,10 +74,10 @@ MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const Ma
         options.mask ? std::size_t(std::count(known.begin(), known.end(), std::uint8_t(1))) : count;
     if (result.known == 0)
         throw Error(ErrorCode::Unusable,
-                    "--mask: not active anywhere in the query's block, so there is nothing to compare");
+                    "`mask`: not active anywhere in the query's block, so there is nothing to compare");
     BlockIndexOptions indexOptions;
     indexOptions.block = options.block;
-    indexOptions.cacheFolder = options.indexFolder;
+    indexOptions.cacheFolder = options.indexCache;
     Stage stage(ctx, "matching", 2);
     const BlockIndex index = BlockIndex::build(field, indexOptions, ctx);
     stage.advance();
@@ -96,6 +89,17 @@ MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const Ma
     stage.advance();
     for (BlockMatch& match : result.matches) match.position = match.position + exemplar.domain.min;
     return result;
+}
+
+}  // namespace
+
+MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const MatchOptions& options,
+                       const RunContext& ctx) {
+    requireOption(options.block >= 4 && options.block <= 256, "block", std::to_string(options.block),
+                  "a whole number from 4 to 256");
+    requireOption(options.count >= 1 && options.count <= 100000, "count", std::to_string(options.count),
+                  "a whole number from 1 to 100000");
+    return withThreads(ctx, [&] { return matched(exemplar, query, options, ctx); });
 }
 
 }  // namespace vdbsynth

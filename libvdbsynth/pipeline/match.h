@@ -9,13 +9,13 @@
 namespace vdbsynth {
 
 struct MatchOptions {
-    int block = 16;           ///< N [voxels], 4..256
-    Index3 at;                ///< minimum corner of the block to look for, in the query's index space
-    int count = 1;            ///< K, 1..100000
-    double tolerance = 0;     ///< BlockSearchOptions::tolerance; 0: exact
-    bool check = false;       ///< with a tolerance: the exact matches too, for MatchResult's ratio and recall
-    std::string indexFolder;  ///< BlockIndexOptions::cacheFolder; empty: none
-    GridPtr mask;  ///< only samples where it is active count, in the query's index space; null: all
+    int block = 16;          ///< N [voxels], 4..256
+    Index3 at;               ///< minimum corner of the block to look for, in the query's index space
+    int count = 1;           ///< K, 1..100000
+    double tolerance = 0;    ///< BlockSearchOptions::tolerance; 0: exact
+    bool check = false;      ///< with a tolerance: the exact matches too, for MatchResult's ratio and recall
+    std::string indexCache;  ///< BlockIndexOptions::cacheFolder; empty: none
+    GridConstPtr mask;       ///< only samples where it is active count, in the query's index space; null: all
 };
 
 struct MatchResult {
@@ -30,7 +30,7 @@ struct MatchResult {
 /// The blocks of an exemplar's domain most like one of the query's, exact; distances are compared in voxels,
 /// clamped to max(8, N/2). With a tolerance: at most (1 + tolerance) times as different.
 /// @throw Error InvalidOption, Unusable (block larger than the domain, no known sample), Memory, Io
-/// (indexFolder), Cancelled
+/// (indexCache), Cancelled
 /// @par Repeats same bits for any number of threads
 MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const MatchOptions& options,
                        const RunContext& ctx = {});

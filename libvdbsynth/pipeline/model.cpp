@@ -42,7 +42,7 @@ double chooseVoxelSize(const std::string& path, const std::vector<Vec3f>& points
     const double voxelSize = longestSide(path, points) / resolution;
     char text[128];
     std::snprintf(text, sizeof text, ": voxel size %.6g (%d voxels along the longest side%s)", voxelSize,
-                  resolution, options.resolution > 0 ? "" : "; --resolution or --voxel-size sets it");
+                  resolution, options.resolution > 0 ? "" : "; `resolution` or `voxelSize` sets it");
     message(ctx, options.resolution > 0 ? MessageLevel::Detail : MessageLevel::Note, path + text);
     return voxelSize;
 }
@@ -114,8 +114,8 @@ LevelSet loadRaster(const std::string& path, const ModelOptions& options, const 
     const bool image = !raster.stack && raster.size.z == 1 && !options.imageAsVolume;
     if (image && (options.volume.threshold || !options.volume.labels.empty()))
         throw Error(ErrorCode::InvalidOption,
-                    std::string(options.volume.threshold ? "--threshold" : "--labels") + ": " + path +
-                        " is an image; convert --as volume takes it for a volume of one slice");
+                    std::string(options.volume.threshold ? "`threshold`" : "`labels`") + ": " + path +
+                        " is an image; with `imageAsVolume` it is a volume of one slice");
     HeightOptions heights = options.heights;
     heights.voxelSize = options.voxelSize;
     heights.resolution = options.resolution;
@@ -154,15 +154,9 @@ void requireModelPath(const std::string& path) {
                                               kRasterExtensions + ", each also with .gz");
 }
 
-LevelSet loadModel(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
-    requireModelPath(path);
-    requireOption(options.voxelSize >= 0 && options.voxelSize < 1e30, "voxel-size",
-                  std::to_string(options.voxelSize), "above 0 (world)");
-    requireOption(options.resolution == 0 || (options.resolution >= 2 && options.resolution <= 100000),
-                  "resolution", std::to_string(options.resolution), "a whole number from 2 to 100000");
-    requireOption(options.halfWidth >= 1.5 && options.halfWidth <= 100, "half-width",
-                  std::to_string(options.halfWidth), "from 1.5 to 100 voxels");
-    const ThreadLimit limit(ctx);
+namespace {
+
+LevelSet loaded(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
     if (isPointPath(path) || holdsPoints(path)) return loadPoints(path, options, ctx);
     if (isMeshPath(path)) return loadMesh(path, options, ctx);
     if (isRasterPath(path)) return loadRaster(path, options, ctx);
@@ -180,17 +174,30 @@ LevelSet loadModel(const std::string& path, const ModelOptions& options, const R
     return model;
 }
 
+}  // namespace
+
+LevelSet loadModel(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
+    requireModelPath(path);
+    requireOption(options.voxelSize >= 0 && options.voxelSize < 1e30, "voxelSize",
+                  std::to_string(options.voxelSize), "above 0 (world)");
+    requireOption(options.resolution == 0 || (options.resolution >= 2 && options.resolution <= 100000),
+                  "resolution", std::to_string(options.resolution), "a whole number from 2 to 100000");
+    requireOption(options.halfWidth >= 1.5 && options.halfWidth <= 100, "halfWidth",
+                  std::to_string(options.halfWidth), "from 1.5 to 100 voxels");
+    return withThreads(ctx, [&] { return loaded(path, options, ctx); });
+}
+
 LevelSet withHalfWidth(const LevelSet& model, double halfWidth, const RunContext& ctx) {
-    requireOption(halfWidth >= 1.5 && halfWidth <= 100, "half-width", std::to_string(halfWidth),
+    requireOption(halfWidth >= 1.5 && halfWidth <= 100, "halfWidth", std::to_string(halfWidth),
                   "from 1.5 to 100 voxels");
     const double present = halfWidthOf(*model.grid);
     if (std::abs(present - halfWidth) < 1e-3 * halfWidth) return model;
-    const ThreadLimit limit(ctx);
     message(ctx, MessageLevel::Detail,
             "the band of " + std::to_string(present) + " voxels a side is re-distanced to " +
                 std::to_string(halfWidth));
     LevelSet result = model;
-    result.grid = rebuildLevelSet(*model.grid, float(halfWidth), "the model", ctx);
+    result.grid =
+        withThreads(ctx, [&] { return rebuildLevelSet(*model.grid, float(halfWidth), "the model", ctx); });
     stampLevelSet(result);
     return result;
 }

@@ -42,7 +42,7 @@ LevelSet loadModel(const std::string& path, const ModelOptions& options = {}, co
 
 /// The model with a band of `halfWidth` voxels a side: itself if it has that, else re-distanced from its zero
 /// level.
-/// @throw Error InvalidOption (--half-width), EmptyInput (no surface)
+/// @throw Error InvalidOption (`halfWidth`), EmptyInput (no surface)
 LevelSet withHalfWidth(const LevelSet& model, double halfWidth, const RunContext& ctx = {});
 
 }  // namespace vdbsynth

@@ -58,23 +58,8 @@ LevelSet repeatSynthesis(const SourceMap& map, int factor, const LevelSets& exem
     return model;
 }
 
-}  // namespace
-
-LevelSet repeatMap(const SourceMap& given, const LevelSets& inputs, const RepeatOptions& options,
-                   const RunContext& ctx) {
-    requireOption(options.halfWidth == 0 || (options.halfWidth >= 1.5f && options.halfWidth <= 100),
-                  "halfWidth", roundedText(double(options.halfWidth), 6), "from 1.5 to 100 voxels");
-    requireOption(options.carried == CarriedValues::Copied || given.method == MapMethod::Synthesis, "carried",
-                  "blended", "copied for the map of an analogy or a fill, whose voxels have one source each");
-    if (inputs.size() != given.inputs())
-        throw Error(ErrorCode::ShapeMismatch,
-                    "the source map was made with " + std::to_string(given.inputs()) +
-                        (given.method == MapMethod::Synthesis ? " exemplars"
-                         : given.method == MapMethod::Fill
-                             ? " models, the kept one last"
-                             : " models, the textured one of each pair and the one it was put on last") +
-                        "; give as many, in the same order");
-    const ThreadLimit limit(ctx);
+LevelSet repeated(const SourceMap& given, const LevelSets& inputs, const RepeatOptions& options,
+                  const RunContext& ctx) {
     SourceMap map = given;
     if (options.halfWidth > 0) map.halfWidth = options.halfWidth;
     const LevelSets exemplars(inputs.begin(), inputs.end() - (map.method == MapMethod::Synthesis ? 0 : 1));
@@ -105,6 +90,25 @@ LevelSet repeatMap(const SourceMap& given, const LevelSets& inputs, const Repeat
                     "`voxelSize` " +
                         exactText(map.target.voxelSize));
     return repeatFill(map, exemplars, *target, ctx);
+}
+
+}  // namespace
+
+LevelSet repeatMap(const SourceMap& given, const LevelSets& inputs, const RepeatOptions& options,
+                   const RunContext& ctx) {
+    requireOption(options.halfWidth == 0 || (options.halfWidth >= 1.5f && options.halfWidth <= 100),
+                  "halfWidth", roundedText(double(options.halfWidth), 6), "from 1.5 to 100 voxels");
+    requireOption(options.carried == CarriedValues::Copied || given.method == MapMethod::Synthesis, "carried",
+                  "blended", "copied for the map of an analogy or a fill, whose voxels have one source each");
+    if (inputs.size() != given.inputs())
+        throw Error(ErrorCode::ShapeMismatch,
+                    "the source map was made with " + std::to_string(given.inputs()) +
+                        (given.method == MapMethod::Synthesis ? " exemplars"
+                         : given.method == MapMethod::Fill
+                             ? " models, the kept one last"
+                             : " models, the textured one of each pair and the one it was put on last") +
+                        "; give as many, in the same order");
+    return withThreads(ctx, [&] { return repeated(given, inputs, options, ctx); });
 }
 
 }  // namespace vdbsynth

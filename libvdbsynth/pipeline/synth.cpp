@@ -38,17 +38,17 @@ ControlFrame frameOf(const SynthPlan& plan, const openvdb::FloatGrid& like) {
 // The variants that rotation and scale maps ask for, and which of them, or of the exemplars, goes where.
 void choose(const SynthOptions& options, const openvdb::FloatGrid& like, SynthPlan& plan, Held& held,
             const RunContext& ctx) {
-    if (!options.which && !options.rotation && !options.scale) return;
+    if (!options.exemplarMap && !options.rotationMap && !options.scaleMap) return;
     const int exemplars = int(plan.map.exemplars.size());
-    if (exemplars > 1 && !options.which)
+    if (exemplars > 1 && !options.exemplarMap)
         throw Error(
             ErrorCode::InvalidOption,
-            "--rotation-map, --scale-map: with several exemplars --which must say which one goes where");
+            "`rotationMap`, `scaleMap`: with several exemplars `exemplarMap` must say which one goes where");
     const std::vector<WantedVariant> wanted =
-        wantedVariants(options.which.get(), options.rotation.get(), options.scale.get(), exemplars,
-                       frameOf(plan, like), ctx);
+        wantedVariants(options.exemplarMap.get(), options.rotationMap.get(), options.scaleMap.get(),
+                       exemplars, frameOf(plan, like), ctx);
     std::vector<std::int32_t> numbers;
-    if (options.rotation || options.scale) {
+    if (options.rotationMap || options.scaleMap) {
         ChosenVariants chosen = chooseVariants(wanted, ctx);
         for (ExemplarVariant& variant : chosen.variants)
             variant.size = variantSize(plan.map.exemplars[std::size_t(variant.exemplar)].box.size(),
@@ -127,15 +127,15 @@ void driftWhereTurned(SynthPlan& plan, const Held& held, const RunContext& ctx) 
 void gatherGuides(const SynthOptions& options, const LevelSets& exemplars, SynthPlan& plan, Held& held,
                   const RunContext& ctx) {
     if (!options.guide) return;
-    requireOption(options.exemplarGuides.size() == exemplars.size(), "exemplar-guide",
+    requireOption(options.exemplarGuides.size() == exemplars.size(), "exemplarGuides",
                   std::to_string(options.exemplarGuides.size()), "one for each exemplar");
-    held.guide = sampledScalar(*options.guide, frameOf(plan, *exemplars.front()->grid), "--guide", ctx);
+    held.guide = sampledScalar(*options.guide, frameOf(plan, *exemplars.front()->grid), "`guide`", ctx);
     std::vector<BrickField> guides;
     for (std::size_t e = 0; e < exemplars.size(); ++e) {
         ControlFrame frame;
         frame.box = plan.map.exemplars[e].box;
         frame.like = exemplars[e]->grid.get();
-        guides.push_back(sampledScalar(*options.exemplarGuides[e], frame, "--exemplar-guide", ctx));
+        guides.push_back(sampledScalar(*options.exemplarGuides[e], frame, "`exemplarGuides`", ctx));
     }
     for (const ExemplarVariant& variant : plan.map.variants)
         held.guides.push_back(variantOfScalar(guides[std::size_t(variant.exemplar)], variant, ctx));
@@ -145,19 +145,7 @@ void gatherGuides(const SynthOptions& options, const LevelSets& exemplars, Synth
     plan.block.guideWeight = float(options.guideWeight);
 }
 
-}  // namespace
-
-SynthResult synthesize(const LevelSets& exemplars, const SynthOptions& options, const RunContext& ctx) {
-    const ThreadLimit limit(ctx);
-    if (exemplars.empty()) throw Error(ErrorCode::InvalidOption, "synthesis needs at least one exemplar");
-    requireOption(!options.which || exemplars.size() > 1, "which", "for one exemplar",
-                  "several exemplars, of which it says which goes where");
-    requireOption(bool(options.guide) == !options.exemplarGuides.empty(), "guide", "alone",
-                  "both --guide and --exemplar-guide");
-    requireOption(options.longestRun >= 0.01 && options.longestRun <= 1, "longest-run",
-                  std::to_string(options.longestRun), "from 0.01 to 1");
-    requireOption(options.guideWeight >= 0.001 && options.guideWeight <= 1000, "guide-weight",
-                  std::to_string(options.guideWeight), "from 0.001 to 1000");
+SynthResult synthesized(const LevelSets& exemplars, const SynthOptions& options, const RunContext& ctx) {
     SynthPlan plan = planSynthesis(exemplars, options);
     const int block = plan.block.block;
     const openvdb::FloatGrid& like = *exemplars.front()->grid;
@@ -191,6 +179,21 @@ SynthResult synthesize(const LevelSets& exemplars, const SynthOptions& options, 
     result.stats = synthesis.stats;
     result.stats.block = result.map.matched;
     return result;
+}
+
+}  // namespace
+
+SynthResult synthesize(const LevelSets& exemplars, const SynthOptions& options, const RunContext& ctx) {
+    if (exemplars.empty()) throw Error(ErrorCode::InvalidOption, "synthesis needs at least one exemplar");
+    requireOption(!options.exemplarMap || exemplars.size() > 1, "exemplarMap", "for one exemplar",
+                  "several exemplars, of which it says which goes where");
+    requireOption(bool(options.guide) == !options.exemplarGuides.empty(), "guide", "alone",
+                  "both `guide` and `exemplarGuides`");
+    requireOption(options.longestRun >= 0.01 && options.longestRun <= 1, "longestRun",
+                  std::to_string(options.longestRun), "from 0.01 to 1");
+    requireOption(options.guideWeight >= 0.001 && options.guideWeight <= 1000, "guideWeight",
+                  std::to_string(options.guideWeight), "from 0.001 to 1000");
+    return withThreads(ctx, [&] { return synthesized(exemplars, options, ctx); });
 }
 
 SynthResult synthesize(const LevelSet& exemplar, const SynthOptions& options, const RunContext& ctx) {

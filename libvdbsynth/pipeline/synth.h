@@ -3,6 +3,7 @@
 #include "libvdbsynth/map/source_map.h"
 #include "libvdbsynth/pipeline/carry.h"
 #include "libvdbsynth/synth/block_synthesis.h"
+#include "libvdbsynth/synth/target_size.h"
 #include "libvdbsynth/vdb/level_set.h"
 
 #include <array>
@@ -13,28 +14,26 @@
 namespace vdbsynth {
 
 struct SynthOptions {
-    /// Per axis the target's size: in voxels, or as a multiple of the domain where `multiple` is set.
-    std::array<double, 3> size{2, 2, 2};
-    std::array<bool, 3> multiple{true, true, true};
-    std::optional<IndexBox> exemplarBox;  ///< overrides the (first) exemplar's domain
+    TargetSize size = TargetSize::multiples(2, 2, 2);  ///< at least the domain, at most 1048576 voxels a side
+    std::optional<IndexBox> exemplarBox;               ///< overrides the (first) exemplar's domain
     std::array<std::optional<Border>, 3>
         border;     ///< empty: cut where a domain is recorded or given, else object
     int block = 0;  ///< see BlockSynthesisOptions
     int levels = 0;
     int drift = 0;
     SynthesisMethod method = SynthesisMethod::Default;
-    bool draft = false;    ///< work at half the resolution and read the result at the full one
-    GridPtr exemplarMask;  ///< sources only where this grid is active; its box is the domain unless
-                           ///< exemplarBox says another; null: everywhere; of the first exemplar
+    bool draft = false;         ///< work at half the resolution and read the result at the full one
+    GridConstPtr exemplarMask;  ///< sources only where this grid is active; its box is the domain unless
+                                ///< exemplarBox says another; null: everywhere; of the first exemplar
     /// Controls, read in the world of the target (guides of exemplars in theirs), see control.h; null: none.
-    GridPtr which;                        ///< which exemplar where; needs several
-    GridPtr rotation, scale;              ///< by how much what is copied is turned and scaled
-    GridPtr guide;                        ///< a scalar by which parts of the exemplars are placed
-    std::vector<GridPtr> exemplarGuides;  ///< the same scalar over each exemplar
-    double guideWeight = 4;               ///< 0.001 to 1000, see BlockSynthesisOptions
-    double longestRun = 0.3;              ///< 0.01 to 1, see BlockSynthesisOptions
-    std::string indexFolder;              ///< BlockIndexOptions::cacheFolder; empty: none
-    float halfWidth = kHalfWidth;         ///< [voxels] of the result
+    GridConstPtr exemplarMap;                  ///< which exemplar where; needs several
+    GridConstPtr rotationMap, scaleMap;        ///< by how much what is copied is turned and scaled
+    GridConstPtr guide;                        ///< a scalar by which parts of the exemplars are placed
+    std::vector<GridConstPtr> exemplarGuides;  ///< the same scalar over each exemplar
+    double guideWeight = 4;                    ///< 0.001 to 1000, see BlockSynthesisOptions
+    double longestRun = 0.3;                   ///< 0.01 to 1, see BlockSynthesisOptions
+    std::string indexCache;                    ///< BlockIndexOptions::cacheFolder; empty: none
+    float halfWidth = kHalfWidth;              ///< [voxels] of the result
     CarriedValues carried = CarriedValues::Copied;
 };
 

@@ -26,14 +26,13 @@ Index3 halfOf(const Index3& n) {
 Index3 targetSize(const Index3& domain, const SynthOptions& options) {
     Index3 size;
     for (int axis = 0; axis < 3; ++axis) {
-        const double given = options.size[std::size_t(axis)];
-        const double voxels = options.multiple[std::size_t(axis)] ? given * domain[axis] : given;
-        requireOption(std::isfinite(voxels) && voxels >= 1 && voxels <= 1 << 20, "size",
-                      std::to_string(given), "at least the exemplar's domain and at most 1048576 voxels");
+        const double voxels = options.size[axis].over(domain[axis]);
+        requireOption(voxels >= 1 && voxels <= 1 << 20, "size", options.size.text(),
+                      "at least the exemplar's domain and at most 1048576 voxels");
         size[axis] = int(std::lround(voxels));
         if (size[axis] < domain[axis])
             throw Error(ErrorCode::Unusable,
-                        "--size: " + std::to_string(size[axis]) + " voxels along " + char('x' + axis) +
+                        "`size`: " + std::to_string(size[axis]) + " voxels along " + char('x' + axis) +
                             " is smaller than the exemplar's domain (" + std::to_string(domain[axis]) +
                             "); give at least that, or 1x");
     }
@@ -45,7 +44,7 @@ void addRoomToTile(SynthPlan& plan, const SynthOptions& options) {
     for (int axis = 0; axis < 3; ++axis) {
         if (plan.block.border[std::size_t(axis)] != Border::Tile) continue;
         if (options.method != SynthesisMethod::Default || options.draft)
-            throw Error(ErrorCode::InvalidOption, "--border tile: needs --method default and no --draft");
+            throw Error(ErrorCode::InvalidOption, "`border` tile: needs `method` default and no `draft`");
         // Two blocks, in whole sixteens, so that coarser passes come out even.
         const int around = (2 * (options.block > 0 ? options.block : 16) + 15) / 16 * 16;
         plan.block.around[axis] = around;
@@ -91,19 +90,19 @@ void removeCrumbsOf(const SourceMap& map, const ExemplarFields& exemplars, Brick
 
 // Controls work by the default method, at the full resolution.
 void requireDefaultMethod(const SynthOptions& options, const SynthPlan& plan) {
-    const std::pair<const GridPtr&, const char*> controls[] = {{options.which, "which"},
-                                                               {options.rotation, "rotation-map"},
-                                                               {options.scale, "scale-map"},
-                                                               {options.guide, "guide"}};
+    const std::pair<const GridConstPtr&, const char*> controls[] = {{options.exemplarMap, "exemplarMap"},
+                                                                    {options.rotationMap, "rotationMap"},
+                                                                    {options.scaleMap, "scaleMap"},
+                                                                    {options.guide, "guide"}};
     for (const auto& [grid, name] : controls)
         if (grid && (options.method != SynthesisMethod::Default || options.draft))
             throw Error(ErrorCode::InvalidOption,
-                        std::string("--") + name + ": needs --method default and no --draft");
+                        std::string("`") + name + "`: needs `method` default and no `draft`");
     const bool object = std::count(plan.block.border.begin(), plan.block.border.end(), Border::Object) > 0;
-    if (object && (options.rotation || options.scale))
-        throw Error(ErrorCode::InvalidOption,
-                    "--rotation-map, --scale-map: an object border cannot be turned; give --border cut or "
-                    "tile");
+    if (object && (options.rotationMap || options.scaleMap))
+        throw Error(
+            ErrorCode::InvalidOption,
+            "`rotationMap`, `scaleMap`: an object border cannot be rotated; give `border` cut or tile");
 }
 
 // Several exemplars: each its own domain, but along axes that do not grow the first one's extent.
@@ -112,7 +111,7 @@ void addExemplars(const LevelSets& exemplars, const SynthOptions& options, Synth
     std::array<bool, 3> grown{};
     for (int axis = 0; axis < 3; ++axis)
         grown[std::size_t(axis)] = map.targetBox.size()[axis] != map.exemplars.front().box.size()[axis];
-    if (exemplars.size() > 1 || options.rotation || options.scale) plan.block.grows = grown;
+    if (exemplars.size() > 1 || options.rotationMap || options.scaleMap) plan.block.grows = grown;
     for (std::size_t e = 1; e < exemplars.size(); ++e) {
         MappedExemplar other;
         other.box = other.domain = exemplars[e]->domain;
@@ -129,8 +128,8 @@ void addExemplars(const LevelSets& exemplars, const SynthOptions& options, Synth
         if (std::abs(voxel - first) > 1e-4 * first)
             throw Error(ErrorCode::ShapeMismatch,
                         "exemplar " + std::to_string(e + 1) + " has voxels of " + std::to_string(voxel) +
-                            ", the first one of " + std::to_string(first) +
-                            "; convert it with --voxel-size " + std::to_string(first));
+                            ", the first one of " + std::to_string(first) + "; convert it with `voxelSize` " +
+                            std::to_string(first));
         map.exemplars.push_back(other);
     }
     for (std::size_t e = 0; e < exemplars.size(); ++e) {
@@ -174,12 +173,12 @@ SynthPlan planSynthesis(const LevelSets& exemplars, const SynthOptions& options)
     plan.block.levels = options.levels;
     plan.block.longestRun = options.longestRun;
     plan.block.drift = options.drift;
-    plan.block.indexFolder = options.indexFolder;
+    plan.block.indexCache = options.indexCache;
     plan.block.paper = options.method == SynthesisMethod::Paper;
     addExemplars(exemplars, options, plan);
     std::vector<Index3> sizes;
     for (const MappedExemplar& mapped : plan.map.exemplars) sizes.push_back(mapped.box.size());
-    validateSynthesis(sizes, plan.block);
+    validate(plan.block, sizes);
     if (options.block == 0) {
         plan.block.block = 256;
         for (const Index3& each : sizes)
@@ -200,7 +199,7 @@ void planDraft(SynthPlan& plan, const RunContext& ctx) {
         block = std::min(block, longestBlock(halfOf(exemplar.box.size()), coarse));
     if (block < 4) {
         message(ctx, MessageLevel::Note,
-                "--draft: the exemplar is too small for half the resolution; all of it is used");
+                "`draft`: the exemplar is too small for half the resolution; all of it is used");
         return;
     }
     coarse.block = block;
@@ -230,7 +229,7 @@ void requireRoom(const RunContext& ctx, const SourceMap& map, const LevelSets& e
                   "a result of " + std::to_string(map.targetBox.size().x) + " x " +
                       std::to_string(map.targetBox.size().y) + " x " +
                       std::to_string(map.targetBox.size().z) + " voxels",
-                  "use a smaller --size or larger voxels");
+                  "use a smaller `size` or larger voxels");
 }
 
 ExemplarFields gatherForSearch(const SourceMap& map, const LevelSets& exemplars, const RunContext& ctx) {

@@ -1,6 +1,7 @@
 #include "libvdbsynth/procedural/analogy_pair.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/random.h"
 #include "libvdbsynth/math/trigonometry.h"
 #include "libvdbsynth/procedural/packing.h"
@@ -200,20 +201,36 @@ const std::vector<AnalogyPairKind>& analogyPairKinds() {
     return kinds;
 }
 
-AnalogyPairFields makeAnalogyPair(const ExemplarOptions& options, const RunContext& ctx) {
+namespace {
+
+const AnalogyPairKind& findPairKind(const std::string& name) {
     const auto& kinds = analogyPairKinds();
-    const auto kind = std::find_if(kinds.begin(), kinds.end(),
-                                   [&](const AnalogyPairKind& k) { return k.name == options.kind; });
+    const auto kind =
+        std::find_if(kinds.begin(), kinds.end(), [&](const AnalogyPairKind& k) { return k.name == name; });
     if (kind == kinds.end())
-        throw Error(ErrorCode::InvalidOption, "make " + options.kind + ": no pair has that name");
-    const double feature = options.feature > 0 ? options.feature : kind->feature;
-    requireOption(feature >= 6 && feature <= 256, "feature", std::to_string(feature), "from 6 to 256 voxels");
+        throw Error(ErrorCode::InvalidOption, "make " + name + ": no pair has that name");
+    return *kind;
+}
+
+}  // namespace
+
+void validatePair(const ExemplarOptions& options) {
+    const AnalogyPairKind& kind = findPairKind(options.kind);
+    requireOption(options.feature == 0 || (options.feature >= 6 && options.feature <= 256), "feature",
+                  roundedText(options.feature, 6), "from 6 to 256 voxels");
+    const double feature = options.feature > 0 ? options.feature : kind.feature;
     requireOption(
         options.resolution >= 4 * feature && options.resolution <= 4096, "resolution",
         std::to_string(options.resolution),
         "at least four features (" + std::to_string(int(std::ceil(4 * feature))) + ") and at most 4096");
+}
+
+AnalogyPairFields makeAnalogyPair(const ExemplarOptions& options, const RunContext& ctx) {
+    validatePair(options);
+    const AnalogyPairKind* kind = &findPairKind(options.kind);
+    const double feature = options.feature > 0 ? options.feature : kind->feature;
     requireMemory(ctx, double(options.resolution) * options.resolution * options.resolution * 24,
-                  "make " + kind->name, "use a smaller --resolution");
+                  "make " + kind->name, "use a smaller `resolution`");
     Stage stage(ctx, "make " + kind->name, 1);
     AnalogyPairFields pair = kind->name == "grooves"    ? grooves(options.resolution, feature, ctx)
                              : kind->name == "thorns"   ? thorns(options.resolution, feature, ctx)

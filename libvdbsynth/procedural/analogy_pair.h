@@ -8,7 +8,8 @@ namespace vdbsynth {
 
 /// A model without and with a texture, to learn from [bhat2004, Figures 2, 7, 8, 9].
 struct AnalogyPairKind {
-    std::string name, summary, direction;  ///< which way the texture runs, as --direction has it
+    std::string name, summary,
+        direction;   ///< which way the texture runs, as parseDirection (pipeline/analogy.h) takes it
     double feature;  ///< default distance from one piece of texture to the next [voxels]
 };
 
@@ -18,6 +19,9 @@ struct AnalogyPairFields {
     ExemplarField plain, textured;
     std::string direction;
 };
+
+/// @throw Error InvalidOption (unknown kind, a field out of its range)
+void validatePair(const ExemplarOptions& options);
 
 /// Both over one domain, only the zero levels are meant. `options.size` is not used: domains follow from
 /// resolution and feature.

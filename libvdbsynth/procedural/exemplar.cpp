@@ -1,6 +1,7 @@
 #include "libvdbsynth/procedural/exemplar.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/procedural/kinds.h"
 
 #include <algorithm>
@@ -42,20 +43,27 @@ const std::vector<ExemplarKind>& exemplarKinds() {
     return kinds;
 }
 
-ExemplarField makeExemplar(const ExemplarOptions& options, const RunContext& ctx) {
-    const ExemplarKind& kind = findKind(options.kind);
-    const double feature = options.feature > 0 ? options.feature : kind.feature;
-    requireOption(feature >= 4 && feature <= 256, "feature", std::to_string(feature), "from 4 to 256 voxels");
+void validate(const ExemplarOptions& options) {
+    findKind(options.kind);
+    requireOption(options.feature == 0 || (options.feature >= 4 && options.feature <= 256), "feature",
+                  roundedText(options.feature, 6), "from 4 to 256 voxels");
     requireOption(options.resolution >= 16 && options.resolution <= 4096, "resolution",
                   std::to_string(options.resolution), "from 16 to 4096");
-    Index3 size = options.size;
-    if (size == Index3{0, 0, 0}) size = defaultSize(kind, options, feature);
+    const Index3& size = options.size;
     for (int axis = 0; axis < 3; ++axis)
-        requireOption(size[axis] >= 8 && size[axis] <= 4096, "size",
+        requireOption(size == Index3{0, 0, 0} || (size[axis] >= 8 && size[axis] <= 4096), "size",
                       std::to_string(size.x) + "," + std::to_string(size.y) + "," + std::to_string(size.z),
                       "three whole numbers from 8 to 4096");
+}
+
+ExemplarField makeExemplar(const ExemplarOptions& options, const RunContext& ctx) {
+    validate(options);
+    const ExemplarKind& kind = findKind(options.kind);
+    const double feature = options.feature > 0 ? options.feature : kind.feature;
+    Index3 size = options.size;
+    if (size == Index3{0, 0, 0}) size = defaultSize(kind, options, feature);
     requireMemory(ctx, double(size.x) * size.y * size.z * 12, "make " + kind.name,
-                  "use a smaller --resolution or --size");
+                  "use a smaller `resolution` or `size`");
     ExemplarRequest request;
     request.domain = IndexBox::fromSize(size);
     request.box = request.domain.expanded(kExemplarMargin);

@@ -36,6 +36,9 @@ struct ExemplarField {
 inline constexpr float kExemplarLimit = 4.f;
 inline constexpr int kExemplarMargin = 6;
 
+/// @throw Error InvalidOption (unknown kind, a field out of its range)
+void validate(const ExemplarOptions& options);
+
 /// @throw Error InvalidOption (unknown kind, size or feature out of range), Cancelled
 /// @par Repeats same bits for (options, ctx.seed), any number of threads
 ExemplarField makeExemplar(const ExemplarOptions& options, const RunContext& ctx = {});

@@ -1,12 +1,14 @@
 #include "libvdbsynth/search/block_index_data.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/search/block_cost.h"
 #include "libvdbsynth/search/block_search.h"
 #include "libvdbsynth/search/block_sift.h"
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <mutex>
 #include <string>
@@ -17,13 +19,30 @@ namespace {
 // Work by bounds that takes as long as one operation of the transforms, by measurement (decision 012).
 constexpr double kBoundsPerOperation = 0.35;
 
-void requireOptions(const BlockSearchOptions& options) {
-    requireOption(options.count >= 1, "count", std::to_string(options.count), "at least 1");
-    requireOption(options.tolerance >= 0 && options.tolerance <= 100, "tolerance",
-                  std::to_string(options.tolerance), "from 0 to 100");
+}  // namespace
+
+void validate(const BlockIndexOptions& options, const BrickField* exemplar) {
+    requireOption(options.block >= 4 && options.block <= 256, "block", std::to_string(options.block),
+                  "a whole number from 4 to 256");
+    requireField(exemplar, "the exemplar");
+    blockPositions(*exemplar, options.block);
+    if (options.mask) requireField(options.mask, "`mask`", exemplar->box().size());
 }
 
-}  // namespace
+void validate(const BlockSearchOptions& options) {
+    requireOption(options.count >= 1, "count", std::to_string(options.count), "at least 1");
+    requireOption(options.tolerance >= 0 && options.tolerance <= 100, "tolerance",
+                  roundedText(options.tolerance, 6), "from 0 to 100");
+}
+
+void validate(const BlockQuery& query, int block) {
+    requireOption(query.samples != nullptr, "samples", "null", "those of a block");
+    bool finite = true;
+    for (std::size_t i = 0, count = std::size_t(block) * std::size_t(block) * std::size_t(block); i < count;
+         ++i)
+        finite = finite && ((query.known && !query.known[i]) || std::isfinite(query.samples[i]));
+    if (!finite) throw Error(ErrorCode::BadData, "`samples`: hold NaN or infinite values");
+}
 
 struct BlockIndex::Impl {
     BlockIndexData data;
@@ -115,7 +134,8 @@ BlockIndex BlockIndex::build(std::shared_ptr<const BrickField> exemplar, const B
 
 std::vector<BlockMatch> BlockIndex::match(const BlockQuery& query, const BlockSearchOptions& options,
                                           BlockSearchCounts* counts) const {
-    requireOptions(options);
+    validate(options);
+    validate(query, mImpl->data.block);
     BlockSearchCounts ignored;
     BlockSearchCounts& count = counts ? *counts : ignored;
     PartialSearch found = mImpl->begin(query, options, count);
@@ -138,7 +158,8 @@ std::vector<std::vector<BlockMatch>> BlockIndex::matchAll(const std::vector<Bloc
                                                           const BlockSearchOptions& options,
                                                           const RunContext& ctx,
                                                           BlockSearchCounts* counts) const {
-    requireOptions(options);
+    validate(options);
+    for (const BlockQuery& query : queries) validate(query, mImpl->data.block);
     constexpr std::size_t kTogether = 8;
     std::vector<PartialSearch> found(queries.size());
     std::vector<BlockSearchCounts> done(queries.size());
@@ -187,6 +208,14 @@ std::size_t BlockIndex::nodeCount() const {
 
 std::vector<BlockMatch> matchBlocksLinearly(const BrickField& exemplar, int block, const BlockQuery& query,
                                             int count, const BrickField* mask) {
+    BlockIndexOptions index;
+    index.block = block;
+    index.mask = mask;
+    validate(index, &exemplar);
+    BlockSearchOptions search;
+    search.count = count;
+    validate(search);
+    validate(query, block);
     const IndexBox positions = blockPositions(exemplar, block);
     const IndexBox box = query.candidates.empty() ? positions : query.candidates.intersection(positions);
     const std::int64_t known = countKnown(query.known, block);

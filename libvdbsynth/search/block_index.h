@@ -64,6 +64,16 @@ struct BlockIndexOptions {
     std::string cacheFolder;
 };
 
+/// @param exemplar  to be searched
+/// @throw Error InvalidOption (`block` out of range, null exemplar), ShapeMismatch (a box that does not begin
+/// at 0, a mask of another box), BadData (NaN), Unusable (block larger than the exemplar)
+void validate(const BlockIndexOptions& options, const BrickField* exemplar);
+/// @throw Error InvalidOption (a field out of its range)
+void validate(const BlockSearchOptions& options);
+/// @param block  the index's
+/// @throw Error InvalidOption (null samples), BadData (NaN where samples count)
+void validate(const BlockQuery& query, int block);
+
 /// Exact best-match search over all blocks of a sparse field: the search tree of [lagae2004, section 4].
 /// A node's bound is its distance at a level of the block pyramid, never above the distance at a finer one
 /// (Eq. 2). Here
@@ -83,8 +93,8 @@ struct BlockIndexOptions {
 class BlockIndex {
 public:
     /// @param exemplar  box begins at 0; kept alive and shared
-    /// @throw Error InvalidOption (--block out of range), Unusable (block larger than the exemplar, no
-    ///              block inside the mask), Memory (by ctx.maxMemory), Io (cacheFolder), Cancelled
+    /// @throw Error as validate, Unusable (no block inside the mask), Memory (by ctx.maxMemory), Io
+    /// (cacheFolder), Cancelled
     /// @par Cost    time O(positions whose blocks are not constant * N), memory 14 bytes each of those and 4
     ///              for each of their means and once more; constant blocks cost 16 bytes a run along z
     ///              The first query that needs the FFT makes its transforms, 16 to 28 bytes a voxel more,
@@ -100,13 +110,13 @@ public:
 
     /// The `count` best blocks, by (cost, x, y, z). Fewer where fewer are eligible; a query without any known
     /// sample costs 0 everywhere. May be called from many threads at once.
-    /// @throw Error InvalidOption (count under 1)
+    /// @throw Error InvalidOption (count under 1, no samples), BadData (NaN among them)
     /// @par Repeats yes; the answer equals matchBlocksLinearly's
     std::vector<BlockMatch> match(const BlockQuery& query, int count = 1,
                                   BlockSearchCounts* counts = nullptr) const;
 
     /// The same with options: within a tolerance where one is asked for.
-    /// @throw Error InvalidOption (an option out of its range)
+    /// @throw Error InvalidOption (an option out of its range, no samples), BadData (NaN among them)
     /// @par Repeats yes: hints too change nothing while tolerance is 0; above it they may
     std::vector<BlockMatch> match(const BlockQuery& query, const BlockSearchOptions& options,
                                   BlockSearchCounts* counts = nullptr) const;
@@ -114,7 +124,7 @@ public:
     /// match for every query, on all of the context's threads. Queries in a row share what they work with and
     /// give the next one their answers as hints, so keep those together that ask for similar things.
     /// @return answers in the order of the queries
-    /// @throw Error InvalidOption, Cancelled
+    /// @throw Error InvalidOption, BadData, Cancelled
     /// @par Repeats same bits for any number of threads
     std::vector<std::vector<BlockMatch>> matchAll(const std::vector<BlockQuery>& queries,
                                                   const BlockSearchOptions& options = {},
@@ -136,7 +146,7 @@ private:
     std::unique_ptr<Impl> mImpl;
 };
 
-/// The oracle: the same answer by a scan over all positions.
+/// The oracle: the same answer by a scan over all positions. @throw Error as BlockIndex
 std::vector<BlockMatch> matchBlocksLinearly(const BrickField& exemplar, int block, const BlockQuery& query,
                                             int count = 1, const BrickField* mask = nullptr);
 

@@ -215,7 +215,7 @@ IndexBox blockPositions(const BrickField& exemplar, int block) {
     const Index3 size = exemplar.box().size();
     if (block > size.x || block > size.y || block > size.z)
         throw Error(ErrorCode::Unusable,
-                    "--block " + std::to_string(block) + ": larger than the exemplar, which has " +
+                    "`block` " + std::to_string(block) + ": larger than the exemplar, which has " +
                         std::to_string(size.x) + " x " + std::to_string(size.y) + " x " +
                         std::to_string(size.z) + " voxels; use a smaller block or a finer exemplar");
     return IndexBox::fromSize({size.x - block + 1, size.y - block + 1, size.z - block + 1});
@@ -270,8 +270,8 @@ void makeMeans(BlockIndexData& data, const RunContext& ctx) {
 void makeNodes(BlockIndexData& data, const RunContext& ctx) {
     std::vector<Hashed> all = hashBlocks(data, ctx);
     if (all.empty())
-        throw Error(ErrorCode::Unusable, "--exemplar-mask: no block of " + std::to_string(data.block) +
-                                             " voxels fits inside the mask; use a smaller --block");
+        throw Error(ErrorCode::Unusable, "`exemplarMask`: no block of " + std::to_string(data.block) +
+                                             " voxels fits inside the mask; use a smaller `block`");
     std::vector<std::uint64_t> firsts;
     std::vector<Member> members;
     joinIdentical(data, all, firsts, members, ctx);
@@ -282,8 +282,7 @@ void makeNodes(BlockIndexData& data, const RunContext& ctx) {
 
 BlockIndexData buildBlockIndexData(std::shared_ptr<const BrickField> exemplar,
                                    const BlockIndexOptions& options, const RunContext& ctx) {
-    requireOption(options.block >= 4 && options.block <= 256, "block", std::to_string(options.block),
-                  "a whole number from 4 to 256");
+    validate(options, exemplar.get());
     BlockIndexData data;
     data.block = options.block;
     data.positions = blockPositions(*exemplar, options.block);
@@ -291,7 +290,7 @@ BlockIndexData buildBlockIndexData(std::shared_ptr<const BrickField> exemplar,
     if (data.positions.volume() >= std::int64_t(std::numeric_limits<std::uint32_t>::max()))
         throw Error(
             ErrorCode::Memory,
-            "the exemplar has over 4 billion block positions; use a smaller --exemplar-box or larger voxels");
+            "the exemplar has over 4 billion block positions; use a smaller `exemplarBox` or larger voxels");
     if (options.mask)
         data.maskMeans = std::make_shared<BrickField>(slidingMean(*options.mask, options.block, ctx));
     data.cells = cellsFor(options.block);
@@ -306,7 +305,7 @@ BlockIndexData buildBlockIndexData(std::shared_ptr<const BrickField> exemplar,
     requireMemory(ctx,
                   double(varied) * kPositionGroup * kPositionGroup * kPositionGroup *
                       (64 + 4 * double(data.cells.size())),
-                  "the search index", "use a smaller --exemplar-box or larger voxels");
+                  "the search index", "use a smaller `exemplarBox` or larger voxels");
     makeMeans(data, ctx);
     const bool dense =
         double(varied) * kPositionGroup * kPositionGroup * kPositionGroup > 0.7 * double(box.volume());

@@ -179,7 +179,7 @@ DirectionField directionField(const SurfaceShell& shell, const std::vector<Vec3f
     if (field.known == 0)
         throw Error(
             ErrorCode::Unusable,
-            "--direction: says nothing about any place of the surface; it is along the normal everywhere, "
+            "`direction`: says nothing about any place of the surface; it is along the normal everywhere, "
             "or nowhere near the model");
     diffuseAll(graph, shell.table.voxels(), ctx);
     field.tangent.resize(shell.size());

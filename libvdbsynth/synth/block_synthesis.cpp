@@ -46,7 +46,7 @@ public:
              const std::string& name) {
         BlockIndexOptions indexOptions;
         indexOptions.block = pass.block;
-        indexOptions.cacheFolder = mOptions.indexFolder;
+        indexOptions.cacheFolder = mOptions.indexCache;
         Stage stage(mContext, name, 1);
         std::vector<BlockIndex> indices;
         for (const auto& exemplar : pass.exemplars) {
@@ -187,7 +187,7 @@ private:
             const Index3& at = asked[i].origin;
             throw Error(ErrorCode::Unusable, "no eligible source for the block at " + std::to_string(at.x) +
                                                  "," + std::to_string(at.y) + "," + std::to_string(at.z) +
-                                                 "; widen --exemplar-mask or raise --drift");
+                                                 "; widen `exemplarMask` or raise `drift`");
         }
         return found;
     }
@@ -286,12 +286,10 @@ private:
 
 BlockSynthesisResult synthesizeBlocks(const Fields& exemplars, const BlockSynthesisOptions& options,
                                       const RunContext& ctx) {
-    std::vector<Index3> sizes;
-    for (const auto& exemplar : exemplars) sizes.push_back(exemplar->box().size());
-    validateSynthesis(sizes, options);
+    validate(options, exemplars);
     for (Border border : options.border)
         if (border == Border::Tile)
-            throw Error(ErrorCode::InvalidOption, "--border tile: needs --method default");
+            throw Error(ErrorCode::InvalidOption, "`border` tile: needs `method` default");
     int block = options.block;
     if (block == 0) {
         block = 256;

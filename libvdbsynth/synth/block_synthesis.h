@@ -59,9 +59,9 @@ struct BlockSynthesisOptions {
     /// the target. Sources may then come from anywhere along every axis. Both or none.
     const BrickField* known = nullptr;
     const BrickField* open = nullptr;
-    bool guessed = false;     ///< what `known` has where it is open is a guess to begin with, not nothing
-    std::string indexFolder;  ///< BlockIndexOptions::cacheFolder; empty: none
-    bool paper = false;       ///< synthesizeBlocks as the paper has it; the block is then a power of two
+    bool guessed = false;    ///< what `known` has where it is open is a guess to begin with, not nothing
+    std::string indexCache;  ///< BlockIndexOptions::cacheFolder; empty: none
+    bool paper = false;      ///< synthesizeBlocks as the paper has it; the block is then a power of two
 };
 
 struct BlockSynthesisStats {
@@ -88,9 +88,14 @@ int longestBlock(const Index3& exemplar, const BlockSynthesisOptions& options);
 /// @throw Error Unusable (the exemplar is too small for blocks of 4)
 int deriveBlock(const Index3& exemplar, const BlockSynthesisOptions& options);
 
-/// All checks of synthesizeBlocks that need no more than the exemplars' sizes, for callers with work to do
-/// before. @throw Error InvalidOption, Unusable
-void validateSynthesis(const std::vector<Index3>& exemplars, const BlockSynthesisOptions& options);
+/// All checks that need no more than the exemplars' sizes, for callers with work to do before the fields are
+/// there. @throw Error InvalidOption, Unusable
+void validate(const BlockSynthesisOptions& options, const std::vector<Index3>& exemplars);
+/// All checks of synthesizeBlocks and optimizeTexture: the same, and the fields.
+/// @throw Error InvalidOption, Unusable, ShapeMismatch (a box that does not begin at 0, a field of another
+/// size than the target or its exemplar), BadData (NaN in a field)
+void validate(const BlockSynthesisOptions& options,
+              const std::vector<std::shared_ptr<const BrickField>>& exemplars);
 
 /// More of the same geometry [lagae2004, section 5], coarse to fine. Each pass works on the exemplar averaged
 /// down and walks over overlapping blocks in an order in which seven of eight octants are done; the best
@@ -109,7 +114,7 @@ void validateSynthesis(const std::vector<Index3>& exemplars, const BlockSynthesi
 ///
 /// @param exemplars  fields of distances [voxels], clamped, boxes begin at 0, at least one
 /// @throw Error InvalidOption (an option out of range), Unusable (block larger than an exemplar, object
-/// border on an exemplar under four blocks), Memory, Cancelled
+/// border on an exemplar under four blocks), ShapeMismatch and BadData (see validate), Memory, Cancelled
 /// @par Cost    O(target blocks * one search); memory: target and exemplar bricks, search index
 /// @par Repeats same bits for (inputs, options, ctx.seed), any number of threads
 BlockSynthesisResult synthesizeBlocks(const std::vector<std::shared_ptr<const BrickField>>& exemplars,

@@ -55,7 +55,7 @@ GuideScales guideScales(const BlockSynthesisOptions& options, std::size_t passes
     const double variance = varianceOf(options.exemplarGuides);
     if (!(variance > 1e-20) || !std::isfinite(variance))
         throw Error(ErrorCode::Unusable,
-                    "--exemplar-guide: has one value throughout the exemplar, or values that are no numbers; "
+                    "`exemplarGuides`: has one value throughout the exemplar, or values that are no numbers; "
                     "give a grid that varies");
     scales.weight = float(double(options.guideWeight) / variance);
     scales.target.push_back(*options.guide);

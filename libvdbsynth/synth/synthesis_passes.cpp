@@ -5,6 +5,7 @@
 #include <string>
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/grid/pyramid.h"
 
 namespace vdbsynth {
@@ -98,7 +99,7 @@ std::vector<SynthesisPass> planPasses(const Fields& exemplars, const BlockSynthe
     }
     if (options.levels > int(passes.size()))
         message(ctx, MessageLevel::Note,
-                "--levels " + std::to_string(options.levels) + ": the exemplar is large enough for " +
+                "`levels` " + std::to_string(options.levels) + ": the exemplar is large enough for " +
                     std::to_string(passes.size()) + "; using those");
     return passes;
 }
@@ -124,7 +125,48 @@ std::vector<PassMasks> masksOf(const BlockSynthesisOptions& options, std::size_t
     return all;
 }
 
-void validateSynthesis(const std::vector<Index3>& exemplars, const BlockSynthesisOptions& options) {
+namespace {
+
+void requireFields(const BlockSynthesisOptions& options,
+                   const std::vector<std::shared_ptr<const BrickField>>& exemplars) {
+    const std::size_t count = exemplars.size();
+    const auto perExemplar = [&](const std::vector<const BrickField*>& fields, const std::string& name) {
+        for (std::size_t e = 0; e < fields.size(); ++e)
+            if (fields[e] || name != "masks")
+                requireField(fields[e], "`" + name + "` " + std::to_string(e + 1),
+                             exemplars[e]->box().size());
+    };
+    requireOption(options.masks.size() <= count, "masks", std::to_string(options.masks.size()),
+                  "at most one for each exemplar");
+    perExemplar(options.masks, "masks");
+    requireOption(bool(options.guide) == !options.exemplarGuides.empty(), "guide", "alone",
+                  "given together with `exemplarGuides`");
+    requireOption(!options.guide || options.exemplarGuides.size() == count, "exemplarGuides",
+                  std::to_string(options.exemplarGuides.size()), "one for each exemplar");
+    perExemplar(options.exemplarGuides, "exemplarGuides");
+    requireOption(bool(options.known) == bool(options.open), "known", "alone", "given together with `open`");
+    const std::pair<const BrickField*, const char*> ofTarget[] = {{options.which, "`which`"},
+                                                                  {options.guide, "`guide`"},
+                                                                  {options.known, "`known`"},
+                                                                  {options.open, "`open`"}};
+    for (const auto& [field, name] : ofTarget)
+        if (field) requireField(field, name, options.size);
+}
+
+}  // namespace
+
+void validate(const BlockSynthesisOptions& options,
+              const std::vector<std::shared_ptr<const BrickField>>& exemplars) {
+    std::vector<Index3> sizes;
+    for (std::size_t e = 0; e < exemplars.size(); ++e) {
+        requireField(exemplars[e].get(), "exemplar " + std::to_string(e + 1));
+        sizes.push_back(exemplars[e]->box().size());
+    }
+    validate(options, sizes);
+    requireFields(options, exemplars);
+}
+
+void validate(const BlockSynthesisOptions& options, const std::vector<Index3>& exemplars) {
     if (exemplars.empty()) throw Error(ErrorCode::InvalidOption, "synthesis needs at least one exemplar");
     const std::string size = std::to_string(options.size.x) + "," + std::to_string(options.size.y) + "," +
                              std::to_string(options.size.z);
@@ -134,27 +176,32 @@ void validateSynthesis(const std::vector<Index3>& exemplars, const BlockSynthesi
     requireOption(options.block == 0 || (options.block >= 4 && options.block <= 256), "block",
                   std::to_string(options.block), "a whole number from 4 to 256");
     requireOption(!options.paper || (options.block & (options.block - 1)) == 0, "block",
-                  std::to_string(options.block), "a power of two with --method paper");
+                  std::to_string(options.block), "a power of two with `method` paper");
     requireOption(options.levels >= 0 && options.levels <= 8, "levels", std::to_string(options.levels),
                   "a whole number from 1 to 8");
-    requireOption(options.drift >= 0, "drift", std::to_string(options.drift), "at least 0 voxels");
+    requireOption(options.drift >= 0 && options.drift <= 1 << 20, "drift", std::to_string(options.drift),
+                  "from 0 to 1048576 voxels");
+    requireOption(options.longestRun >= 0.01 && options.longestRun <= 1, "longestRun",
+                  roundedText(options.longestRun, 6), "from 0.01 to 1");
+    requireOption(options.guideWeight >= 0.001f && options.guideWeight <= 1000, "guideWeight",
+                  roundedText(double(options.guideWeight), 6), "from 0.001 to 1000");
     for (const Index3& exemplar : exemplars)
         for (int axis = 0; axis < 3; ++axis) {
             const int length = exemplar[axis];
             if (!options.open && !options.grows && options.size[axis] < length)
-                throw Error(ErrorCode::Unusable, "--size " + size +
+                throw Error(ErrorCode::Unusable, "`size` " + size +
                                                      ": smaller than the exemplar's domain along " +
                                                      char('x' + axis) + " (" + std::to_string(length) +
                                                      " voxels); give at least that, or 1x");
             if (options.block > length)
-                throw Error(ErrorCode::Unusable, "--block " + std::to_string(options.block) +
+                throw Error(ErrorCode::Unusable, "`block` " + std::to_string(options.block) +
                                                      ": larger than the exemplar, which has " +
                                                      std::to_string(length) + " voxels along " +
                                                      char('x' + axis));
             if (options.block > 0 && grows(options, axis, length) &&
                 options.border[std::size_t(axis)] == Border::Object && options.block * 4 > length)
                 throw Error(ErrorCode::Unusable,
-                            "--block " + std::to_string(options.block) +
+                            "`block` " + std::to_string(options.block) +
                                 ": an object border needs an exemplar of four blocks along " +
                                 char('x' + axis) + ", it has " + std::to_string(length) + " voxels");
         }
@@ -163,11 +210,10 @@ void validateSynthesis(const std::vector<Index3>& exemplars, const BlockSynthesi
 int deriveBlock(const Index3& exemplar, const BlockSynthesisOptions& options) {
     const int block = std::min(16, longestBlock(exemplar, options));
     if (block < 4)
-        throw Error(
-            ErrorCode::Unusable,
-            "the exemplar's domain of " + std::to_string(exemplar.x) + " x " + std::to_string(exemplar.y) +
-                " x " + std::to_string(exemplar.z) +
-                " voxels is too small for blocks of 4; use smaller voxels or a larger --exemplar-box");
+        throw Error(ErrorCode::Unusable,
+                    "the exemplar's domain of " + std::to_string(exemplar.x) + " x " +
+                        std::to_string(exemplar.y) + " x " + std::to_string(exemplar.z) +
+                        " voxels is too small for blocks of 4; use smaller voxels or a larger `exemplarBox`");
     return block;
 }
 

@@ -155,8 +155,8 @@ void fitToMask(const Given& given, bool blockGiven, std::vector<Pass>& passes, c
         else
             throw Error(ErrorCode::Unusable,
                         given.open.empty()
-                            ? "--exemplar-mask: no block of " + std::to_string(block) +
-                                  " voxels fits inside the mask; use a smaller --block"
+                            ? "`exemplarMask`: no block of " + std::to_string(block) +
+                                  " voxels fits inside the mask; use a smaller `block`"
                             : "nothing of the exemplar is left to fill the hole from; give an EXEMPLAR");
     }
 }
@@ -257,9 +257,9 @@ private:
 BlockSynthesisResult optimizeTexture(const Fields& exemplars, const BlockSynthesisOptions& options,
                                      const RunContext& ctx) {
     BlockSynthesisOptions own = options;
+    validate(options, exemplars);
     std::vector<Index3> sizes;
     for (const auto& exemplar : exemplars) sizes.push_back(exemplar->box().size());
-    validateSynthesis(sizes, options);
     if (own.block == 0) {
         own.block = 256;
         for (const Index3& size : sizes) own.block = std::min(own.block, deriveBlock(size, options));
@@ -268,7 +268,7 @@ BlockSynthesisResult optimizeTexture(const Fields& exemplars, const BlockSynthes
     if (passes.size() == 1 && std::count(own.border.begin(), own.border.end(), Border::Tile) > 0)
         message(
             ctx, MessageLevel::Note,
-            "--border tile: an odd size is made in one pass; a multiple of 4 voxels gives better results");
+            "`border` tile: an odd size is made in one pass; a multiple of 4 voxels gives better results");
     const Given given = givenFor(own, passes.size(), ctx);
     fitToMask(given, options.block > 0, passes, ctx);
     return Optimization(passes, own, given, ctx).run();

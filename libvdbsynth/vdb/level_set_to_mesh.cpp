@@ -34,7 +34,7 @@ Mesh levelSetToMesh(const openvdb::FloatGrid& grid, const MeshingOptions& option
                   std::to_string(options.adaptivity), "from 0 to 1");
     Stage stage(ctx, "level set to mesh", 2);
     if (options.sharp && options.adaptivity > 0)
-        throw Error(ErrorCode::InvalidOption, "--sharp and --adaptivity: give one of them");
+        throw Error(ErrorCode::InvalidOption, "`sharp` and `adaptivity`: give one of them");
     Mesh mesh;
     if (options.sharp) {
         std::optional<Mesh> source;

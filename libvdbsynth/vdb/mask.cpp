@@ -1,6 +1,7 @@
 #include "libvdbsynth/vdb/mask.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/wall.h"
 
@@ -42,7 +43,7 @@ BrickField gatherMask(const openvdb::GridBase& grid, const IndexBox& box, const 
         throw Error(ErrorCode::ShapeMismatch,
                     "mask \"" + grid.getName() + "\": its voxels (size " +
                         std::to_string(grid.voxelSize()[0]) + ") are not those of the model (size " +
-                        std::to_string(like.voxelSize()[0]) + "); make it with the same --voxel-size");
+                        std::to_string(like.voxelSize()[0]) + "); make it with the same `voxelSize`");
     BrickField field;
     if (gatherActive<openvdb::BoolGrid>(grid, box, field, ctx) ||
         gatherActive<openvdb::FloatGrid>(grid, box, field, ctx) ||
@@ -92,8 +93,8 @@ GridPtr insideMask(const openvdb::FloatGrid& levelSet) {
 }
 
 GridPtr rangeMask(const openvdb::FloatGrid& grid, double minimum, double maximum) {
-    requireOption(minimum <= maximum, "range", std::to_string(minimum) + "," + std::to_string(maximum),
-                  "a smaller and a larger value");
+    requireOption(minimum <= maximum, "minimum", roundedText(minimum, 6),
+                  "at most `maximum` " + roundedText(maximum, 6));
     auto mask = emptyMask(grid.transform().copy());
     for (auto it = grid.cbeginValueOn(); it; ++it) {
         if (double(*it) < minimum || double(*it) > maximum) continue;

@@ -21,7 +21,7 @@ IndexBox activeBox(const openvdb::GridBase& grid);
 
 /// Every voxel of `box`.
 GridPtr boxMask(const IndexBox& box, double voxelSize);
-/// Voxels whose centre is within `radius` of `centre`. [world] @throw Error InvalidOption (--radius)
+/// Voxels whose centre is within `radius` of `centre`. [world] @throw Error InvalidOption (`radius`)
 GridPtr ballMask(const Vec3d& centre, double radius, double voxelSize);
 /// Voxels inside a solid.
 GridPtr insideMask(const openvdb::FloatGrid& levelSet);

@@ -39,7 +39,7 @@ struct SolidOptions {
 /// faces turned to agree, goes to meshToLevelSet. Any other (open, with edges of three faces, of one-sided
 /// parts) gets its sign from the generalised winding number, closed smoothly across its openings, with a
 /// warning that says what was found.
-/// @throw Error InvalidOption (--thickness), Unusable (it encloses next to nothing: a sheet), Memory,
+/// @throw Error InvalidOption (`thickness`), Unusable (it encloses next to nothing: a sheet), Memory,
 /// Cancelled
 /// @par Cost    as meshToLevelSet; with winding numbers a few microseconds for each voxel at the surface more
 /// @par Repeats same bits for any number of threads
@@ -76,7 +76,7 @@ struct MeshingOptions {
 /// else OpenVDB's dual contouring, then two Newton steps that put each vertex on the trilinear zero level
 /// (OpenVDB's own lie up to a tenth of a voxel inside curved surfaces), then sheets that touch are separated
 /// (geometry/mesh.h).
-/// @throw Error InvalidOption (--adaptivity, --sharp), EmptyInput (no zero level), Cancelled
+/// @throw Error InvalidOption (`adaptivity`, `sharp`), EmptyInput (no zero level), Cancelled
 /// @par Repeats same bits for any number of threads
 Mesh levelSetToMesh(const openvdb::FloatGrid& grid, const MeshingOptions& options = {},
                     const RunContext& ctx = {});

@@ -58,13 +58,13 @@ std::string missingVolume(const Volumes& volumes, const Mesh& mesh, double voxel
     const MeshSummary summary = summarize(mesh);
     if (summary.openEdges == 0 && enclosed > 0 && enclosed >= 0.5 * std::abs(volume)) return "";
     if (summary.openEdges == 0 && std::abs(volume) > 0 && std::abs(volume) < area * voxelSize)
-        return "thinner than a voxel; use a smaller --voxel-size or a larger --resolution";
+        return "thinner than a voxel; use a smaller `voxelSize` or a larger `resolution`";
     if (summary.openEdges == 0)
         return "no open edges, but the level set encloses under half of the faces' volume; its shells "
                "overlap "
-               "or repeat, unite them or make a shell with --open shell --thickness W";
+               "or repeat, unite them or make a shell with `open` shell and a `thickness`";
     return std::to_string(summary.openEdges) +
-           " open edges; close the mesh or make a shell with --open shell --thickness W (the level set "
+           " open edges; close the mesh or make a shell with `open` shell and a `thickness` (the level set "
            "encloses " +
            std::to_string(int(std::abs(volume) > 0 ? 100 * enclosed / std::abs(volume) : 0)) +
            " % of the volume that the faces suggest)";
@@ -83,7 +83,7 @@ void requireBandMemory(const Mesh& mesh, double voxelSize, double halfWidth, con
                 2;
     requireMemory(ctx, area / (voxelSize * voxelSize) * 2 * halfWidth * kBytesPerBandVoxel,
                   name + ": a level set at voxel size " + std::to_string(voxelSize),
-                  "use a larger --voxel-size or a smaller --resolution");
+                  "use a larger `voxelSize` or a smaller `resolution`");
 }
 
 // True for a mesh that OpenVDB converts well. Faces given twice leave gaps in its band.
@@ -129,9 +129,9 @@ FloatGridPtr rebuilt(const FloatGridPtr& field, double voxelSize, double halfWid
 }
 
 void checkOptions(double voxelSize, double halfWidth) {
-    requireOption(std::isfinite(voxelSize) && voxelSize > 0, "voxel-size", std::to_string(voxelSize),
+    requireOption(std::isfinite(voxelSize) && voxelSize > 0, "voxelSize", std::to_string(voxelSize),
                   "above 0");
-    requireOption(halfWidth >= 1.5 && halfWidth <= 1000, "half-width", std::to_string(halfWidth),
+    requireOption(halfWidth >= 1.5 && halfWidth <= 1000, "halfWidth", std::to_string(halfWidth),
                   "from 1.5 to 1000 voxels");
 }
 
@@ -171,15 +171,16 @@ FloatGridPtr openVdbLevelSet(const Mesh& mesh, double voxelSize, double halfWidt
     requireBandMemory(mesh, voxelSize, halfWidth, name, ctx);
     Stage stage(ctx, "mesh to level set", 1);
     const Faces faces = facesOf(mesh);
-    const ThreadLimit limit(ctx);
     return behindWall(ErrorCode::Unusable, name, [&] {
         Interrupter interrupter(ctx);
         openvdb::util::NullInterrupter& base = interrupter;
         const auto transform = openvdb::math::Transform::createLinearTransform(voxelSize);
-        const openvdb::FloatGrid::Ptr grid =
-            exact ? unsmoothed(base, *transform, faces, float(halfWidth))
-                  : openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(
-                        base, *transform, faces.points, faces.triangles, faces.quads, float(halfWidth));
+        const openvdb::FloatGrid::Ptr grid = withThreads(ctx, [&] {
+            return exact
+                       ? unsmoothed(base, *transform, faces, float(halfWidth))
+                       : openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(
+                             base, *transform, faces.points, faces.triangles, faces.quads, float(halfWidth));
+        });
         throwIfCancelled(ctx);
         stage.advance();
         return FloatGridPtr(grid);

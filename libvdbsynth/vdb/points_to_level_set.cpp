@@ -135,9 +135,9 @@ private:
 
 FloatGridPtr pointsToSolid(const PointCloud& cloud, double voxelSize, double halfWidth,
                            const std::string& name, const SolidOptions& options, const RunContext& ctx) {
-    requireOption(std::isfinite(voxelSize) && voxelSize > 0, "voxel-size", std::to_string(voxelSize),
+    requireOption(std::isfinite(voxelSize) && voxelSize > 0, "voxelSize", std::to_string(voxelSize),
                   "above 0");
-    requireOption(halfWidth >= 1.5 && halfWidth <= 1000, "half-width", std::to_string(halfWidth),
+    requireOption(halfWidth >= 1.5 && halfWidth <= 1000, "halfWidth", std::to_string(halfWidth),
                   "from 1.5 to 1000 voxels");
     const bool shell = options.open == OpenMesh::Shell;
     requireOption(!shell || (std::isfinite(options.thickness) && options.thickness >= voxelSize), "thickness",
@@ -161,15 +161,16 @@ FloatGridPtr pointsToSolid(const PointCloud& cloud, double voxelSize, double hal
     for (float spacing : pointSpacing(index, ctx)) area += double(spacing) * double(spacing);
     requireMemory(ctx, area * 2 * halfWidth * 60,
                   name + ": a level set at voxel size " + std::to_string(voxelSize),
-                  "use a larger --voxel-size or a smaller --resolution");
+                  "use a larger `voxelSize` or a smaller `resolution`");
     Stage stage(ctx, "points to level set", 1);
     PointField points(index, shell ? float(options.thickness / voxelSize) : 0, ctx);
     const double share = shell ? 1 : points.solidShare();
     if (share < 0.5)
-        message(ctx, MessageLevel::Warning,
-                name + ": " + std::to_string(int(100 * (1 - share))) +
-                    " % of the points bound nothing, as of a scan from one side; --open shell --thickness W "
-                    "makes a shell of them");
+        message(
+            ctx, MessageLevel::Warning,
+            name + ": " + std::to_string(int(100 * (1 - share))) +
+                " % of the points bound nothing, as of a scan from one side; `open` shell and a `thickness` "
+                "makes a shell of them");
     const FloatGridPtr field = points.run();
     stage.advance();
     field->setTransform(openvdb::math::Transform::createLinearTransform(voxelSize));

@@ -1,6 +1,7 @@
 #include "libvdbsynth/vdb/preview.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/base/random.h"
 #include "libvdbsynth/vdb/coord.h"
@@ -166,10 +167,10 @@ private:
     std::optional<Streaks> mStreaks;
 };
 
-const openvdb::Vec3SGrid* vectorsOf(const GridPtr& grid) {
+const openvdb::Vec3SGrid* vectorsOf(const GridConstPtr& grid) {
     if (!grid) return nullptr;
     if (!grid->isType<openvdb::Vec3SGrid>())
-        throw Error(ErrorCode::BadData, "--directions: grid " + grid->getName() + " holds " +
+        throw Error(ErrorCode::BadData, "`directions`: grid " + grid->getName() + " holds " +
                                             grid->valueType() + "; vectors of floats are needed");
     return static_cast<const openvdb::Vec3SGrid*>(grid.get());
 }
@@ -197,19 +198,21 @@ bool isEdge(const std::vector<Hit>& hits, int width, int height, int x, int y) {
     return false;
 }
 
+void requireSize(int width, int height) {
+    requireOption(width >= 16 && height >= 16 && width <= 8192 && height <= 8192, "width",
+                  std::to_string(width) + ", height " + std::to_string(height),
+                  "from 16 to 8192 pixels each");
+}
+
 }  // namespace
 
 Picture renderPreview(const openvdb::FloatGrid& grid, const PreviewOptions& options, const RunContext& ctx) {
-    const std::string size = std::to_string(options.width) + "x" + std::to_string(options.height);
-    requireOption(
-        options.width >= 16 && options.height >= 16 && options.width <= 8192 && options.height <= 8192,
-        "size", size, "from 16x16 to 8192x8192");
+    requireSize(options.width, options.height);
     requireOption(length(options.view) > 0, "view", "0,0,0", "a direction");
     requireOption(options.samples >= 1 && options.samples <= 64, "samples", std::to_string(options.samples),
                   "from 1 to 64");
     const openvdb::Vec3SGrid* directions = vectorsOf(options.directions);
     const IndexBox box = solidBox(grid, "the model");
-    const ThreadLimit limit(ctx);
     // The corners of the solid's box in world space; a rotated grid gives the box around them.
     Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
     for (int c = 0; c < 8; ++c) {
@@ -269,12 +272,11 @@ Picture renderPreview(const openvdb::FloatGrid& grid, const PreviewOptions& opti
 
 Picture renderSlice(const openvdb::FloatGrid& grid, const IndexBox& box, const SliceOptions& options,
                     const RunContext& ctx) {
-    const std::string size = std::to_string(options.width) + "x" + std::to_string(options.height);
-    requireOption(
-        options.width >= 16 && options.height >= 16 && options.width <= 8192 && options.height <= 8192,
-        "size", size, "from 16x16 to 8192x8192");
-    requireOption(options.axis >= 0 && options.axis <= 2 && options.fraction >= 0 && options.fraction <= 1,
-                  "slice", std::to_string(options.fraction), "an axis and a fraction, for example z=0.5");
+    requireSize(options.width, options.height);
+    requireOption(options.axis >= 0 && options.axis <= 2, "axis", std::to_string(options.axis),
+                  "0, 1 or 2 for x, y or z");
+    requireOption(options.fraction >= 0 && options.fraction <= 1, "fraction",
+                  roundedText(options.fraction, 6), "from 0 to 1");
     const int axis = options.axis, across = axis == 0 ? 1 : 0, up = axis == 2 ? 1 : 2;
     const double slice = box.min[axis] + options.fraction * (box.max[axis] - box.min[axis]);
     const double scale =

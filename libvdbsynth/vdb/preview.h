@@ -8,9 +8,10 @@ namespace vdbsynth {
 struct PreviewOptions {
     int width = 800, height = 600;  ///< [pixels], 16..8192
     Vec3d view{1.0, -1.6,
-               0.9};     ///< direction from the model to the camera, not zero; z is up unless it is along z
-    GridPtr directions;  ///< vectors of floats beside the surface, drawn as streaks along them; null: none
-    int samples = 4;     ///< rays a pixel at edges (elsewhere one), 1..64
+               0.9};  ///< direction from the model to the camera, not zero; z is up unless it is along z
+    GridConstPtr
+        directions;   ///< vectors of floats beside the surface, drawn as streaks along them; null: none
+    int samples = 4;  ///< rays a pixel at edges (elsewhere one), 1..64
 };
 
 /// A shaded picture of a level set: perspective camera that sees the whole solid, one key light with

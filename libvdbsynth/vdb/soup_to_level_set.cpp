@@ -140,23 +140,24 @@ private:
 }  // namespace
 
 FloatGridPtr soupToField(const Mesh& indexMesh, const std::string& name, const RunContext& ctx) {
-    const ThreadLimit limit(ctx);
     const WindingNumber winding(indexMesh, ctx);
     const double share = solidShare(indexMesh, winding);
     if (share < 0.5)
         throw Error(ErrorCode::Unusable,
                     name + ": a sheet with " + std::to_string(summarize(indexMesh).openEdges) +
                         " open edges: " + std::to_string(int(100 * (1 - share))) +
-                        " % of its area bounds nothing; close the mesh or make a shell with --open shell "
-                        "--thickness W");
-    return behindWall(ErrorCode::Unusable, name, [&] { return Soup(indexMesh, winding, ctx).run(); });
+                        " % of its area bounds nothing; close the mesh or make a shell with `open` shell "
+                        "`thickness` W");
+    return withThreads(ctx, [&] {
+        return behindWall(ErrorCode::Unusable, name, [&] { return Soup(indexMesh, winding, ctx).run(); });
+    });
 }
 
 FloatGridPtr sheetToField(const Mesh& indexMesh, double thickness, const RunContext& ctx) {
-    const ThreadLimit limit(ctx);
     return behindWall(ErrorCode::Unusable, "faces", [&] {
         const float half = float(thickness / 2), reach = half + kHalfWidth + 1;
-        openvdb::FloatGrid::Ptr grid = unsignedDistance(indexMesh, reach, ctx);
+        openvdb::FloatGrid::Ptr grid =
+            withThreads(ctx, [&] { return unsignedDistance(indexMesh, reach, ctx); });
         for (auto it = grid->beginValueAll(); it; ++it) it.setValue(std::min(*it - half, kHalfWidth));
         grid->tree().root().setBackground(kHalfWidth, /* updateChildNodes= */ false);
         return FloatGridPtr(grid);

@@ -53,7 +53,8 @@ struct VdbReadOptions {
 LevelSet readVdbModel(const std::string& path, const VdbReadOptions& options = {},
                       const RunContext& ctx = {});
 
-/// The same from grids that were read. @param path  for messages
+/// The same from grids that were read, which stay as they are; a level set's tree is shared with the result.
+/// @param path  for messages
 LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& grids,
                         const VdbReadOptions& options = {}, const RunContext& ctx = {});
 

@@ -36,5 +36,7 @@ using FloatGrid = Grid<FloatTree>;
 
 namespace vdbsynth {
 using FloatGridPtr = std::shared_ptr<openvdb::FloatGrid>;
+using FloatGridConstPtr = std::shared_ptr<const openvdb::FloatGrid>;
 using GridPtr = std::shared_ptr<openvdb::GridBase>;
+using GridConstPtr = std::shared_ptr<const openvdb::GridBase>;
 }  // namespace vdbsynth

@@ -1,5 +1,6 @@
 // Which grid of a VDB file is the model, and what makes a level set of it.
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/vdb_file.h"
@@ -43,7 +44,7 @@ GridPtr pickGrid(const std::string& path, const std::vector<GridPtr>& grids, con
         }
     }
     if (!options.gridName.empty())
-        throw Error(ErrorCode::BadData, "--grid " + options.gridName + ": not in " + path + ", which has " +
+        throw Error(ErrorCode::BadData, "`grid` " + options.gridName + ": not in " + path + ", which has " +
                                             (names.empty() ? "no grids" : names));
     if (options.iso && fog) return fog;
     if (levelSet) return levelSet;
@@ -86,19 +87,34 @@ bool keepsDistances(const openvdb::FloatGrid& grid) {
     return true;
 }
 
+// The zero level in the voxels of another transform, by OpenVDB.
+openvdb::FloatGrid::Ptr rebuiltBy(const openvdb::FloatGrid& grid, const openvdb::math::Transform& transform,
+                                  const std::string& what, const RunContext& ctx) {
+    return withThreads(ctx, [&] {
+        return behindWall(ErrorCode::Unusable, what, [&] {
+            return openvdb::tools::levelSetRebuild(grid, 0.f, kHalfWidth, kHalfWidth, &transform);
+        });
+    });
+}
+
+// Negative where a fog is denser than `iso`.
+openvdb::FloatGrid::Ptr insideOut(const openvdb::FloatGrid& fog, double iso) {
+    openvdb::FloatGrid::Ptr field = fog.deepCopy();
+    for (auto it = field->beginValueAll(); it; ++it) it.setValue(float(iso) - *it);
+    field->tree().root().setBackground(float(iso) - fog.background(), /* updateChildNodes= */ false);
+    return field;
+}
+
 openvdb::FloatGrid::Ptr fogToLevelSet(const std::string& path, const openvdb::FloatGrid& fog, double iso,
                                       const RunContext& ctx) {
     const ValueRange range = rangeOf(fog);
     if (iso <= std::min(range.minimum, double(fog.background())) || iso >= range.maximum)
         throw Error(ErrorCode::Unusable,
-                    "--iso " + std::to_string(iso) + ": no surface there; the values of \"" + fog.getName() +
+                    "`iso` " + std::to_string(iso) + ": no surface there; the values of \"" + fog.getName() +
                         "\" in " + path + " run from " +
                         std::to_string(std::min(range.minimum, double(fog.background()))) + " to " +
                         std::to_string(range.maximum));
-    openvdb::FloatGrid::Ptr field = fog.deepCopy();
-    for (auto it = field->beginValueAll(); it; ++it) it.setValue(float(iso) - *it);
-    field->tree().root().setBackground(float(iso) - fog.background(), /* updateChildNodes= */ false);
-    return rebuildLevelSet(*field, kHalfWidth, path + ": --iso", ctx);
+    return rebuildLevelSet(*insideOut(fog, iso), kHalfWidth, path + ": `iso`", ctx);
 }
 
 }  // namespace
@@ -122,8 +138,10 @@ LevelSet readVdbModel(const std::string& path, const VdbReadOptions& options, co
 
 LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& grids,
                         const VdbReadOptions& options, const RunContext& ctx) {
-    openvdb::FloatGrid::Ptr grid = asFloat(pickGrid(path, grids, options));
-    refuseUnusable(path, *grid);
+    const openvdb::FloatGrid::Ptr given = asFloat(pickGrid(path, grids, options));
+    refuseUnusable(path, *given);
+    // A name, metadata and a transform of its own; the tree is the caller's and stays as it is.
+    openvdb::FloatGrid::Ptr grid = given->copy();
     LevelSet model;
     std::string domainText;
     if (const auto meta = grid->getMetadata<openvdb::StringMetadata>(kDomainKey)) domainText = meta->value();
@@ -138,7 +156,7 @@ LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& gri
             ErrorCode::Unusable,
             path + ": grid \"" + grid->getName() + "\" is a " +
                 (grid->getGridClass() == openvdb::GRID_FOG_VOLUME ? "fog volume" : "plain scalar grid") +
-                ", not a level set; say where its surface is with --iso VALUE (its values run from " +
+                ", not a level set; say where its surface is with `iso` VALUE (its values run from " +
                 std::to_string(rangeOf(*grid).minimum) + " to " + std::to_string(rangeOf(*grid).maximum) +
                 ")");
     if (!keepsDistances(*grid)) {
@@ -147,13 +165,8 @@ LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& gri
         message(ctx, MessageLevel::Note,
                 path + ": voxels are not cubes; resampled to " + std::to_string(smallest));
         const auto transform = openvdb::math::Transform::createLinearTransform(smallest);
-        if (asFog) {
-            for (auto it = grid->beginValueAll(); it; ++it) it.setValue(float(*options.iso) - *it);
-            grid->tree().root().setBackground(float(*options.iso) - grid->background(), false);
-        }
-        grid = behindWall(ErrorCode::Unusable, path, [&] {
-            return openvdb::tools::levelSetRebuild(*grid, 0.f, kHalfWidth, kHalfWidth, transform.get());
-        });
+        if (asFog) grid = insideOut(*grid, *options.iso);
+        grid = rebuiltBy(*grid, *transform, path, ctx);
         model.domainRecorded = false;
     } else if (asFog) {
         grid = fogToLevelSet(path, *grid, *options.iso, ctx);
@@ -178,9 +191,7 @@ LevelSet resampled(const LevelSet& model, double voxelSize, const RunContext& ct
     // Scaled in index space: the transform keeps its rotation and origin.
     const openvdb::math::Transform::Ptr transform = model.grid->transform().copy();
     transform->preScale(1 / ratio);
-    result.grid = behindWall(ErrorCode::Unusable, "resampling", [&] {
-        return openvdb::tools::levelSetRebuild(*model.grid, 0.f, kHalfWidth, kHalfWidth, transform.get());
-    });
+    result.grid = rebuiltBy(*model.grid, *transform, "resampling", ctx);
     throwIfCancelled(ctx);
     result.domain = solidBox(*result.grid, "the model in voxels of " + std::to_string(voxelSize));
     if (model.domainRecorded) {

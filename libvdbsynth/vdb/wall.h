@@ -19,7 +19,7 @@ auto behindWall(ErrorCode code, const std::string& what, Work&& work) -> decltyp
     } catch (const Error&) {
         throw;
     } catch (const std::bad_alloc&) {
-        throw Error(ErrorCode::Memory, what + ": out of memory; use larger voxels or raise --max-memory");
+        throw Error(ErrorCode::Memory, what + ": out of memory; use larger voxels or raise `maxMemory`");
     } catch (const std::exception& e) {
         std::string text = e.what();
         for (char& c : text)

@@ -40,10 +40,11 @@ Mesh zeroLevelInIndexSpace(const openvdb::FloatGrid& grid, double adaptivity, co
     std::vector<openvdb::Vec3s> points;
     std::vector<openvdb::Vec3I> triangles;
     std::vector<openvdb::Vec4I> quads;
-    const ThreadLimit limit(ctx);
-    behindWall(ErrorCode::Unusable, "level set", [&] {
-        openvdb::tools::volumeToMesh(*indexGrid, points, triangles, quads, 0.0, adaptivity,
-                                     /* relaxDisorientedTriangles= */ true);
+    withThreads(ctx, [&] {
+        behindWall(ErrorCode::Unusable, "level set", [&] {
+            openvdb::tools::volumeToMesh(*indexGrid, points, triangles, quads, 0.0, adaptivity,
+                                         /* relaxDisorientedTriangles= */ true);
+        });
     });
     throwIfCancelled(ctx);
     Mesh mesh;

@@ -20,5 +20,5 @@ TEST_CASE("requireOption: a bad value names the option, the value and the range"
     CHECK_NOTHROW(requireOption(true, "block", "16", "from 4 to 256"));
     const test::Thrown thrown = test::thrownBy([] { requireOption(false, "block", "3", "from 4 to 256"); });
     CHECK(thrown.code == int(ErrorCode::InvalidOption));
-    CHECK(thrown.message == "--block 3: must be from 4 to 256");
+    CHECK(thrown.message == "`block` 3: must be from 4 to 256");
 }

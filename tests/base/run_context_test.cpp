@@ -35,7 +35,7 @@ TEST_CASE("requireMemory: over the limit says how much and what helps", "[base][
     const test::Thrown thrown =
         test::thrownBy([&] { requireMemory(ctx, 4e12, "a grid", "use larger voxels"); });
     CHECK(thrown.code == int(ErrorCode::Memory));
-    CHECK(thrown.message == "a grid needs about 4e+03 GB, over --max-memory 1 GB; use larger voxels");
+    CHECK(thrown.message == "a grid needs about 4e+03 GB, over `maxMemory` 1 GB; use larger voxels");
     ctx.maxMemory = 0;
     CHECK_NOTHROW(requireMemory(ctx, 4e15, "a grid", ""));
 }

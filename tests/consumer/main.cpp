@@ -13,7 +13,7 @@ int main() {
     make.exemplar.resolution = 32;
     const vdbsynth::LevelSet exemplar = vdbsynth::makeModel(make);
     vdbsynth::SynthOptions synth;
-    synth.size = {2, 1, 1};
+    synth.size = vdbsynth::TargetSize::multiples(2, 1, 1);
     const vdbsynth::SynthResult result = vdbsynth::synthesize(exemplar, synth);
     std::printf("%zu active voxels\n", std::size_t(result.model.grid->activeVoxelCount()));
     return result.model.grid->activeVoxelCount() > exemplar.grid->activeVoxelCount() ? 0 : 1;

@@ -34,7 +34,7 @@ double crossing(const BrickField& field, Index3 p, int axis) {
 }  // namespace
 
 TEST_CASE("heightField: the zero level is at the heights, sizes are those asked for", "[grid][oracle]") {
-    // 8 bits: 255 is --height.
+    // 8 bits: 255 is the height.
     Raster raster = rasterOf({20, 12, 1}, [](int x, int y, int) { return float(5 * x + 3 * y); });
     raster.white = 255;
     HeightOptions options;
@@ -167,7 +167,7 @@ TEST_CASE("volumeField: of two values the larger is solid, of more one must be n
     CHECK(test::contains(result.description, "255 is solid"));
     const Raster many = rasterOf({8, 8, 8}, [](int x, int, int) { return float(x); });
     CHECK(test::contains(test::thrownBy([&] { volumeField("a.npy", many); }).message,
-                         "a.npy: say what of it is solid with --threshold"));
+                         "a.npy: say what of it is solid with `threshold`"));
     VolumeOptions none;
     none.threshold = 7;
     CHECK(test::contains(test::thrownBy([&] { volumeField("a", many, none); }).message,

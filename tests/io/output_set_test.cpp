@@ -39,14 +39,31 @@ TEST_CASE("OutputSet: without commit the old file stays and the temporary goes",
     CHECK(test::contains(told[0], "/.a.txt."));
 }
 
+TEST_CASE("OutputSet: two at once may write one file, the last one stays", "[io][property]") {
+    const test::TemporaryFolder folder;
+    {
+        OutputSet first, second;
+        std::ofstream one(first.add(folder.path("a.txt"))), two(second.add(folder.path("a.txt")));
+        one << "first" << std::flush;
+        two << "second" << std::flush;
+        first.commit();
+        CHECK(test::contentOf(folder.path("a.txt")) == "first");
+        second.commit();
+    }
+    CHECK(test::contentOf(folder.path("a.txt")) == "second");
+    CHECK(folder.fileCount() == 1);
+}
+
 TEST_CASE("OutputSet: stale temporaries of dead runs go, those of others stay", "[io][property]") {
     const test::TemporaryFolder folder;
     folder.write(".a.txt.999999999.tmp", "stale");
+    folder.write(".a.txt.999999999-2.tmp", "stale");
     folder.write(".a.txt.1.tmp", "of a living process");
     folder.write(".b.txt.999999999.tmp", "another output's");
     OutputSet outputs;
     outputs.add(folder.path("a.txt"));
     CHECK(test::contentOf(folder.path(".a.txt.999999999.tmp")).empty());
+    CHECK(test::contentOf(folder.path(".a.txt.999999999-2.tmp")).empty());
     CHECK(test::contentOf(folder.path(".a.txt.1.tmp")) == "of a living process");
     CHECK(test::contentOf(folder.path(".b.txt.999999999.tmp")) == "another output's");
 }

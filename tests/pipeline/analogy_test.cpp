@@ -133,7 +133,7 @@ TEST_CASE("makeAnalogyModel: every refusal says what to do", "[pipeline]") {
     fine.voxelSize = 0.5;
     const test::Thrown sizes = thrown(pair.plain, makePair(fine).textured, target, options);
     CHECK(sizes.code == int(ErrorCode::ShapeMismatch));
-    CHECK(test::contains(sizes.message, "--voxel-size"));
+    CHECK(test::contains(sizes.message, "`voxelSize`"));
     AnalogyOptions strong = options;
     strong.strength = 2;
     CHECK(thrown(pair.plain, pair.textured, target, strong).code == int(ErrorCode::InvalidOption));
@@ -143,7 +143,7 @@ TEST_CASE("makeAnalogyModel: every refusal says what to do", "[pipeline]") {
     // A plane has no curvature to follow.
     const test::Thrown flat = thrown(pair.plain, pair.textured, pairOf("pits").plain, {});
     CHECK(flat.code == int(ErrorCode::Unusable));
-    CHECK(test::contains(flat.message, "--direction"));
+    CHECK(test::contains(flat.message, "`direction`"));
     AnalogyOptions memory = options;
     RunContext little;
     little.maxMemory = 1000;

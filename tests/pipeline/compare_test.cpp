@@ -256,7 +256,7 @@ TEST_CASE("compareModels: errors, cancel, threads", "[pipeline][error]") {
     options.process->kind = "balls";
     const auto noDomain = test::thrownBy([&] { compared(ball(12), ball(12), options); });
     CHECK(noDomain.code == int(ErrorCode::Unusable));
-    CHECK(test::contains(noDomain.message, "--process"));
+    CHECK(test::contains(noDomain.message, "`process`"));
     options.fresh = 1;
     CHECK(test::thrownBy([&] { compared(ball(12), ball(12), options); }).code ==
           int(ErrorCode::InvalidOption));

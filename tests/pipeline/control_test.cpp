@@ -30,15 +30,15 @@ TEST_CASE("sampledScalar: read in the world, between voxels, and round a period"
         for (int y = -3; y < 9; ++y)
             for (int z = -3; z < 9; ++z) ramp->tree().setValueOn({x, y, z}, float(2 * x + 1));
     ControlFrame frame = frameOver({{2, 1, 0}, {41, 9, 9}}, *like);
-    const BrickField field = sampledScalar(*ramp, frame, "--guide");
+    const BrickField field = sampledScalar(*ramp, frame, "`guide`");
     CHECK(field.at({0, 0, 0}) == Approx(1.0));
     CHECK(field.at({39, 4, 4}) == Approx(20.5));
     frame.tiles = {true, false, false};
     frame.period = {{10, 1, 0}, {29, 9, 9}};
-    const BrickField tiled = sampledScalar(*ramp, frame, "--guide");
+    const BrickField tiled = sampledScalar(*ramp, frame, "`guide`");
     CHECK(tiled.at({0, 0, 0}) == Approx(11.0));   // voxel 2 is voxel 22
     CHECK(tiled.at({39, 0, 0}) == Approx(10.5));  // voxel 41 is voxel 21
-    CHECK(test::thrownBy([&] { sampledScalar(*openvdb::Vec3SGrid::create(), frame, "--guide"); }).code ==
+    CHECK(test::thrownBy([&] { sampledScalar(*openvdb::Vec3SGrid::create(), frame, "`guide`"); }).code ==
           int(ErrorCode::BadData));
 }
 
@@ -68,10 +68,10 @@ TEST_CASE("wantedVariants: numbers, turns and scales of every fourth voxel", "[p
                            const openvdb::GridBase* c) {
         return test::thrownBy([&] { wantedVariants(a, b, c, 2, frame); });
     };
-    CHECK(test::contains(error(which.get(), nullptr, nullptr).message, "--which: 2.0"));
+    CHECK(test::contains(error(which.get(), nullptr, nullptr).message, "`exemplarMap`: 2.0"));
     CHECK(error(which.get(), nullptr, nullptr).code == int(ErrorCode::Unusable));
     scale->fill(openvdb::CoordBBox({0, 0, 0}, {15, 7, 3}), 7.f);
-    CHECK(test::contains(error(nullptr, nullptr, scale.get()).message, "--scale-map: 7.0"));
+    CHECK(test::contains(error(nullptr, nullptr, scale.get()).message, "`scaleMap`: 7.0"));
     auto wild = openvdb::FloatGrid::create(std::numeric_limits<float>::quiet_NaN());
     CHECK(error(nullptr, wild.get(), nullptr).code == int(ErrorCode::Unusable));
     CHECK(error(turn.get(), nullptr, nullptr).code == int(ErrorCode::BadData));

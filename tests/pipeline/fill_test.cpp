@@ -200,8 +200,7 @@ TEST_CASE("fillHoles: nothing to fill, nothing to fill from, no mesh, cancelled"
     CHECK(away.code == int(ErrorCode::Unusable));
     CHECK(test::contains(away.message, "outside the model's domain"));
     CHECK(thrown({{-5, -5, -5}, {60, 60, 60}}).code == int(ErrorCode::Unusable));
-    CHECK(test::contains(test::thrownBy([&] { holesAtOpenEdges(partial); }).message,
-                         "--hole auto: needs a mesh"));
+    CHECK(test::contains(test::thrownBy([&] { holesAtOpenEdges(partial); }).message, "`hole`: needs a mesh"));
     LevelSet closed = partial;
     closed.source = std::make_shared<const Mesh>(test::sphereMesh(5, 1));
     CHECK(test::contains(test::thrownBy([&] { holesAtOpenEdges(closed); }).message, "no open edges"));

@@ -29,5 +29,5 @@ TEST_CASE("makeModel: every kind is a valid capped level set on its domain", "[p
     MakeOptions bad;
     bad.exemplar.kind = "grid";
     bad.voxelSize = 0;
-    CHECK(test::contains(test::thrownBy([&] { makeModel(bad); }).message, "--voxel-size"));
+    CHECK(test::contains(test::thrownBy([&] { makeModel(bad); }).message, "`voxelSize`"));
 }

@@ -48,14 +48,14 @@ TEST_CASE("matchModel: under a mask only its samples count", "[pipeline][propert
     CHECK(masked.known == 4 * 8 * 8);
     CHECK(masked.matches[0].cost < all);
     options.mask = boxMask({{0, 0, 0}, {1, 1, 1}}, 1);
-    CHECK(test::contains(test::thrownBy([&] { matchModel(model, query, options); }).message, "--mask"));
+    CHECK(test::contains(test::thrownBy([&] { matchModel(model, query, options); }).message, "`mask`"));
 }
 
 TEST_CASE("matchModel: bad options are named", "[pipeline][error]") {
     const LevelSet model = made("grid", 1);
     MatchOptions options;
     options.block = 2;
-    CHECK(test::contains(test::thrownBy([&] { matchModel(model, model, options); }).message, "--block 2"));
+    CHECK(test::contains(test::thrownBy([&] { matchModel(model, model, options); }).message, "`block` 2"));
     options.block = 41;
     CHECK(test::thrownBy([&] { matchModel(model, model, options); }).code == int(ErrorCode::Unusable));
     options.block = 16;
@@ -64,5 +64,5 @@ TEST_CASE("matchModel: bad options are named", "[pipeline][error]") {
                          "outside the query's domain"));
     options.at = {0, 0, 0};
     options.count = 0;
-    CHECK(test::contains(test::thrownBy([&] { matchModel(model, model, options); }).message, "--count 0"));
+    CHECK(test::contains(test::thrownBy([&] { matchModel(model, model, options); }).message, "`count` 0"));
 }

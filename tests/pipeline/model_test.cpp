@@ -66,5 +66,5 @@ TEST_CASE("withHalfWidth: another band, the same surface, its own band is left a
     CHECK(halfWidthOf(*wide.grid) == Approx(6));
     CHECK(solidVoxels(*wide.grid) == Approx(solidVoxels(*model.grid)).epsilon(0.005));
     CHECK(wide.grid->getConstAccessor().getValue({24, 0, 0}) == Approx(2).margin(0.05));
-    CHECK(test::contains(test::thrownBy([&] { withHalfWidth(model, 1); }).message, "--half-width"));
+    CHECK(test::contains(test::thrownBy([&] { withHalfWidth(model, 1); }).message, "`halfWidth`"));
 }

@@ -34,7 +34,7 @@ LevelSet made(const char* kind, int resolution = 40, double feature = 0, double 
 
 SynthOptions sized(double x, double y, double z) {
     SynthOptions options;
-    options.size = {x, y, z};
+    options.size = TargetSize::multiples(x, y, z);
     return options;
 }
 
@@ -139,7 +139,7 @@ TEST_CASE("repeatMap: a map of floats gives the same back as one of whole number
     SynthOptions options = sized(2, 1, 1);
     auto exemplars = openvdb::FloatGrid::create(0.f);
     exemplars->fill({openvdb::Coord(0, 0, 0), openvdb::Coord(39, 59, 43)}, 1.f);
-    options.which = exemplars;
+    options.exemplarMap = exemplars;
     const SynthResult result = synthesize({&balls, &grid}, options);
     for (MapTypes types : {MapTypes::Integer, MapTypes::Float})
         CHECK(levelSetHash(*again(result.map, result.model, {&balls, &grid}, types).grid) ==

@@ -30,7 +30,7 @@ LevelSet made(const char* kind, int resolution = 40, double feature = 0, double 
 
 SynthOptions sized(double x, double y, double z) {
     SynthOptions options;
-    options.size = {x, y, z};
+    options.size = TargetSize::multiples(x, y, z);
     return options;
 }
 
@@ -63,7 +63,7 @@ TEST_CASE("synthesize: a draft is valid, closed, about as full, of the size aske
         INFO(kind);
         const LevelSet exemplar = made(kind, 48);
         SynthOptions options = sized(2, 1, 1);
-        options.size[1] = 1.3;
+        options.size[1] = Extent::multiple(1.3);
         const SynthResult full = synthesize(exemplar, options);
         options.draft = true;
         const SynthResult draft = synthesize(exemplar, options);
@@ -95,7 +95,7 @@ TEST_CASE(
         if (level == MessageLevel::Note) said += text;
     };
     const SynthResult draft = synthesize(exemplar, options, ctx);
-    CHECK(test::contains(said, "--draft"));
+    CHECK(test::contains(said, "`draft`"));
     CHECK(levelSetHash(*draft.model.grid) == levelSetHash(*full.model.grid));
 }
 
@@ -115,8 +115,8 @@ TEST_CASE("synthesize: an object keeps its faces and grows in between", "[pipeli
 TEST_CASE("synthesize: a tiling result fills its domain and goes on at the other side",
           "[pipeline][property]") {
     const LevelSet exemplar = made("balls", 48);
-    SynthOptions options = sized(80, 80, 48);
-    options.multiple = {false, false, false};
+    SynthOptions options;
+    options.size = TargetSize::voxels(80, 80, 48);
     options.border = {Border::Tile, Border::Tile, Border::Cut};
     const SynthResult result = synthesize(exemplar, options);
     CHECK(result.model.domain.size() == Index3{80, 80, 48});
@@ -136,13 +136,13 @@ TEST_CASE("synthesize: a tiling result fills its domain and goes on at the other
     CHECK(changes(79, 0) < 1.5 * inside);
     CHECK(levelSetHash(*repeatMap(result.map, {&exemplar}).grid) == levelSetHash(*result.model.grid));
     options.method = SynthesisMethod::Exact;
-    CHECK(test::contains(test::thrownBy([&] { synthesize(exemplar, options); }).message, "--border tile"));
+    CHECK(test::contains(test::thrownBy([&] { synthesize(exemplar, options); }).message, "`border` tile"));
 }
 
 TEST_CASE("synthesize: sizes in voxels, an exemplar box, a mask", "[pipeline][property]") {
     const LevelSet exemplar = made("balls", 64);
-    SynthOptions options = sized(70, 50, 1);
-    options.multiple = {false, false, true};
+    SynthOptions options;
+    options.size = {Extent::voxels(70), Extent::voxels(50), Extent::multiple(1)};
     options.exemplarBox = IndexBox{{4, 4, 4}, {43, 43, 35}};
     options.exemplarMask = boxMask({{4, 4, 4}, {30, 43, 35}}, 1);
     options.block = 8;
@@ -151,7 +151,7 @@ TEST_CASE("synthesize: sizes in voxels, an exemplar box, a mask", "[pipeline][pr
     const PatchMap& patches = result.map.patches;
     for (const Index3& source : patches.source) REQUIRE(source.x + patches.block <= 27);
     options.exemplarMask = boxMask({{4, 4, 4}, {6, 6, 6}}, 1);
-    CHECK(test::contains(test::thrownBy([&] { synthesize(exemplar, options); }).message, "--exemplar-mask"));
+    CHECK(test::contains(test::thrownBy([&] { synthesize(exemplar, options); }).message, "`exemplarMask`"));
 }
 
 TEST_CASE("synthesize: what comes with the exemplar is read through the map, and repeated",
@@ -300,7 +300,7 @@ TEST_CASE("synthesize: several exemplars, each where it is asked for, with what 
         exemplar->carried = {mark};
     }
     SynthOptions options = sized(2, 1.5, 1);
-    options.which = boxGrid({{0, 0, 0}, {39, 59, 43}}, 1);
+    options.exemplarMap = boxGrid({{0, 0, 0}, {39, 59, 43}}, 1);
     const SynthResult result = synthesize({&balls, &grid}, options);
     CHECK(result.model.domain.size() == Index3{80, 60, 40});
     const std::vector<GridPtr> grids = sourceMapGrids(result.map, *result.model.grid);
@@ -346,7 +346,7 @@ TEST_CASE("synthesize: turned and scaled by maps", "[pipeline][property]") {
         return sum / double(count);
     };
     SynthOptions options = sized(2, 2, 1);
-    options.rotation = boxGrid({{0, 0, 0}, {47, 95, 47}}, float(3.14159265358979 / 2));
+    options.rotationMap = boxGrid({{0, 0, 0}, {47, 95, 47}}, float(3.14159265358979 / 2));
     const SynthResult result = synthesize(fibres, options);
     const IndexBox turned{{4, 4, 4}, {36, 90, 43}}, plain{{60, 4, 4}, {90, 90, 43}};
     const openvdb::FloatGrid& grid = *result.model.grid;
@@ -364,8 +364,8 @@ TEST_CASE("synthesize: turned and scaled by maps", "[pipeline][property]") {
     const auto rotation = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grids[5]);
     CHECK(rotation->tree().getValue(rotation->beginValueOn().getCoord()).z() == Approx(1.5708));
 
-    options.rotation.reset();
-    options.scale = boxGrid({{0, 0, 0}, {95, 95, 47}}, 1.5f, 1.5f);
+    options.rotationMap.reset();
+    options.scaleMap = boxGrid({{0, 0, 0}, {95, 95, 47}}, 1.5f, 1.5f);
     const SynthResult larger = synthesize(fibres, options);
     // Surface per volume goes with 1 / scale.
     const auto density = [](const LevelSet& model) {
@@ -385,11 +385,11 @@ TEST_CASE("synthesize: turned and scaled by maps", "[pipeline][property]") {
 TEST_CASE("synthesize: a guide places parts of the exemplar", "[pipeline][property]") {
     const LevelSet balls = made("balls"), grid = made("grid");
     SynthOptions both = sized(2, 1, 1);
-    both.which = boxGrid({{0, 0, 0}, {39, 39, 39}}, 1);
+    both.exemplarMap = boxGrid({{0, 0, 0}, {39, 39, 39}}, 1);
     const SynthResult mixed = synthesize({&balls, &grid}, both);
     SynthOptions options = sized(1.5, 2, 1);
     options.guide = boxGrid({{0, 0, 0}, {119, 39, 39}}, 1);
-    options.exemplarGuides = {both.which};
+    options.exemplarGuides = {both.exemplarMap};
     const SynthResult result = synthesize(mixed.model, options);
     std::size_t right = 0, all = 0;
     for (std::size_t i = 0; i < result.map.patches.source.size(); ++i) {
@@ -419,9 +419,9 @@ TEST_CASE("synthesize: controls give the same bits for any number of threads, an
           "[pipeline][determinism][cancel]") {
     const LevelSet balls = made("balls"), grid = made("grid");
     SynthOptions options = sized(1.5, 2, 1);
-    options.which = boxGrid({{0, 0, 0}, {39, 79, 39}}, 1);
-    options.rotation = boxGrid({{0, 0, 0}, {59, 30, 39}}, 0.5f);
-    options.scale = boxGrid({{0, 40, 0}, {59, 79, 39}}, 1.25f, 1);
+    options.exemplarMap = boxGrid({{0, 0, 0}, {39, 79, 39}}, 1);
+    options.rotationMap = boxGrid({{0, 0, 0}, {59, 30, 39}}, 0.5f);
+    options.scaleMap = boxGrid({{0, 40, 0}, {59, 79, 39}}, 1.25f, 1);
     options.guide = boxGrid({{20, 0, 0}, {59, 79, 39}}, 1);
     options.exemplarGuides = {boxGrid({{0, 0, 0}, {19, 39, 39}}, 1), boxGrid({{0, 0, 0}, {39, 19, 39}}, 1)};
     const auto run = [&](int threads, std::atomic<bool>* cancel) {

@@ -48,5 +48,5 @@ TEST_CASE("makeAnalogyPair: what cannot be made is refused", "[procedural]") {
     options.kind = "pits";
     options.feature = 32;
     options.resolution = 64;
-    CHECK(test::contains(test::thrownBy([&] { makeAnalogyPair(options); }).message, "--resolution"));
+    CHECK(test::contains(test::thrownBy([&] { makeAnalogyPair(options); }).message, "`resolution`"));
 }

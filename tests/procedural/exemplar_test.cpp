@@ -75,14 +75,14 @@ TEST_CASE("makeExemplar: sizes, features and errors", "[procedural][error]") {
     options.size = {40, 32, 24};
     CHECK(makeExemplar(options).domain.size() == Index3{40, 32, 24});
     options.size = {40, 32, 4};
-    CHECK(test::contains(test::thrownBy([&] { makeExemplar(options); }).message, "--size 40,32,4"));
+    CHECK(test::contains(test::thrownBy([&] { makeExemplar(options); }).message, "`size` 40,32,4"));
     CHECK(test::contains(test::thrownBy([] { makeExemplar(optionsFor("cubes")); }).message,
                          "unknown kind; one of balls, grid"));
     CHECK(test::contains(test::thrownBy([] { makeExemplar(optionsFor("grid", 8)); }).message,
-                         "--resolution 8"));
+                         "`resolution` 8"));
     options = optionsFor("grid");
     options.feature = 2;
-    CHECK(test::contains(test::thrownBy([&] { makeExemplar(options); }).message, "--feature 2"));
+    CHECK(test::contains(test::thrownBy([&] { makeExemplar(options); }).message, "`feature` 2"));
     RunContext ctx;
     ctx.maxMemory = 1000000;
     CHECK(test::thrownBy([&] { makeExemplar(optionsFor("grid", 512), ctx); }).code == int(ErrorCode::Memory));

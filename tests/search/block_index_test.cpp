@@ -163,7 +163,7 @@ TEST_CASE("BlockIndex: with an exemplar mask only blocks wholly inside it are fo
     const test::Thrown thrown =
         test::thrownBy([&] { BlockIndex::build(std::make_shared<const BrickField>(field), options); });
     CHECK(thrown.code == int(ErrorCode::Unusable));
-    CHECK(test::contains(thrown.message, "--exemplar-mask"));
+    CHECK(test::contains(thrown.message, "`exemplarMask`"));
 }
 
 TEST_CASE("BlockIndex: constant regions and repeats are one node", "[search][property]") {
@@ -224,11 +224,11 @@ TEST_CASE("BlockIndex: bad options and cancel", "[search][error][cancel]") {
     BlockIndexOptions options;
     options.block = 3;
     CHECK(test::contains(test::thrownBy([&] { BlockIndex::build(field, options); }).message,
-                         "--block 3: must be"));
+                         "`block` 3: must be"));
     options.block = 11;
     const test::Thrown larger = test::thrownBy([&] { BlockIndex::build(field, options); });
     CHECK(larger.code == int(ErrorCode::Unusable));
-    CHECK(test::contains(larger.message, "--block 11: larger than the exemplar"));
+    CHECK(test::contains(larger.message, "`block` 11: larger than the exemplar"));
     options.block = 10;
     const BlockIndex whole = BlockIndex::build(field, options);
     const std::vector<float> samples = test::samplesOf(*field);
@@ -255,7 +255,7 @@ TEST_CASE("BlockIndex: a mostly empty field costs what its surface costs", "[sea
     ctx.maxMemory = 100000;
     const test::Thrown thrown = test::thrownBy([&] { BlockIndex::build(ballIn(48), options, ctx); });
     CHECK(thrown.code == int(ErrorCode::Memory));
-    CHECK(test::contains(thrown.message, "--exemplar-box"));
+    CHECK(test::contains(thrown.message, "`exemplarBox`"));
 }
 
 TEST_CASE("BlockIndex: where bounds leave too much correlation goes on, where memory allows it",

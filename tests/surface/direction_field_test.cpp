@@ -46,7 +46,7 @@ TEST_CASE("directionField: what lies along the normal everywhere is an error", "
         const test::Thrown thrown =
             test::thrownBy([&] { directionField(shell, alongAll(shell, direction)); });
         CHECK(thrown.code == int(ErrorCode::Unusable));
-        CHECK(test::contains(thrown.message, "--direction"));
+        CHECK(test::contains(thrown.message, "`direction`"));
     }
 }
 

@@ -113,19 +113,19 @@ TEST_CASE("synthesizeBlocks: options out of range and exemplars too small are na
     const auto message = [&](const BlockSynthesisOptions& options) {
         return test::thrownBy([&] { synthesizeBlocks({exemplar}, options); });
     };
-    CHECK(test::contains(message(optionsFor({40, 40, 40}, 3, 1)).message, "--block 3"));
-    CHECK(test::contains(message(optionsFor({40, 40, 40}, 8, 9)).message, "--levels 9"));
+    CHECK(test::contains(message(optionsFor({40, 40, 40}, 3, 1)).message, "`block` 3"));
+    CHECK(test::contains(message(optionsFor({40, 40, 40}, 8, 9)).message, "`levels` 9"));
     CHECK(test::contains(message(optionsFor({10, 40, 40}, 8, 1)).message,
                          "smaller than the exemplar's domain along x (20 voxels)"));
     const test::Thrown larger = message(optionsFor({40, 40, 40}, 24, 1));
     CHECK(larger.code == int(ErrorCode::Unusable));
-    CHECK(test::contains(larger.message, "--block 24: larger than the exemplar"));
+    CHECK(test::contains(larger.message, "`block` 24: larger than the exemplar"));
     BlockSynthesisOptions object = optionsFor({40, 40, 40}, 8, 1);
     object.border[1] = Border::Object;
     CHECK(test::contains(message(object).message, "four blocks along y"));
     BlockSynthesisOptions drift = optionsFor({40, 40, 40}, 8, 1);
     drift.drift = -1;
-    CHECK(test::contains(message(drift).message, "--drift -1"));
+    CHECK(test::contains(message(drift).message, "`drift` -1"));
     CHECK(test::thrownBy([] {
               synthesizeBlocks({}, optionsFor({8, 8, 8}, 4, 1));
           }).code == int(ErrorCode::InvalidOption));

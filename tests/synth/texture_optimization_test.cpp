@@ -181,5 +181,5 @@ TEST_CASE("optimizeTexture: a tiling target begins as it ends, with no more of a
     for (int x = 16; x < 72; ++x)
         for (int z = 0; z < 40; ++z) REQUIRE(field.at({x, 12, z}) == field.at({x, 60, z}));
     CHECK(test::contains(test::thrownBy([&] { synthesizeBlocks({exemplar}, options); }).message,
-                         "--border tile"));
+                         "`border` tile"));
 }

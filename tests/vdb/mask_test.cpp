@@ -20,8 +20,8 @@ TEST_CASE("masks: box, ball, inside and range hold the voxels that they name", "
     CHECK(
         count(rangeMask(*grid, -1, 0.5)) ==
         double(std::count_if(samples.begin(), samples.end(), [](float v) { return v >= -1 && v <= 0.5f; })));
-    CHECK(test::contains(test::thrownBy([] { ballMask({0, 0, 0}, 0, 1); }).message, "--radius"));
-    CHECK(test::contains(test::thrownBy([&] { rangeMask(*grid, 2, 1); }).message, "--range"));
+    CHECK(test::contains(test::thrownBy([] { ballMask({0, 0, 0}, 0, 1); }).message, "`radius`"));
+    CHECK(test::contains(test::thrownBy([&] { rangeMask(*grid, 2, 1); }).message, "`minimum`"));
 }
 
 TEST_CASE("gatherMask: 1 where active, for grids of several types, vectors are refused", "[vdb][error]") {

@@ -33,8 +33,8 @@ TEST_CASE("meshToLevelSet: an open mesh is refused with its open edges counted",
 
 TEST_CASE("meshToLevelSet: options out of range, too much memory, cancel", "[vdb][error][cancel]") {
     const Mesh sphere = test::sphereMesh(10, 3);
-    CHECK(test::contains(test::thrownBy([&] { meshToLevelSet(sphere, 0, 3, "s"); }).message, "--voxel-size"));
-    CHECK(test::contains(test::thrownBy([&] { meshToLevelSet(sphere, 1, 1, "s"); }).message, "--half-width"));
+    CHECK(test::contains(test::thrownBy([&] { meshToLevelSet(sphere, 0, 3, "s"); }).message, "`voxelSize`"));
+    CHECK(test::contains(test::thrownBy([&] { meshToLevelSet(sphere, 1, 1, "s"); }).message, "`halfWidth`"));
     RunContext ctx;
     ctx.maxMemory = 1000000000;
     CHECK(test::thrownBy([&] { meshToLevelSet(sphere, 1e-4, 3, "s", ctx); }).code == int(ErrorCode::Memory));
@@ -60,7 +60,7 @@ TEST_CASE("levelSetToMesh: closed, manifold, outward, on the zero level", "[vdb]
     CHECK(test::thrownBy([&] { levelSetToMesh(*empty); }).code == int(ErrorCode::EmptyInput));
     MeshingOptions bad;
     bad.adaptivity = 2;
-    CHECK(test::contains(test::thrownBy([&] { levelSetToMesh(*empty, bad); }).message, "--adaptivity"));
+    CHECK(test::contains(test::thrownBy([&] { levelSetToMesh(*empty, bad); }).message, "`adaptivity`"));
 }
 
 TEST_CASE("levelSetToMesh: sheets that touch at voxel edges come out closed and manifold",
@@ -101,7 +101,7 @@ TEST_CASE("levelSetToPoints: even spacing, outward unit normals, repeats by seed
     CHECK(farthest < 2.0);
     CHECK(levelSetToPoints(*grid, options).points.size() == cloud.points.size());
     options.spacing = 0.1;
-    CHECK(test::contains(test::thrownBy([&] { levelSetToPoints(*grid, options); }).message, "--spacing"));
+    CHECK(test::contains(test::thrownBy([&] { levelSetToPoints(*grid, options); }).message, "`spacing`"));
 }
 
 TEST_CASE("meshToLevelSet, levelSetToMesh: same bits for any number of threads", "[vdb][determinism]") {

@@ -78,7 +78,7 @@ TEST_CASE("pointsToSolid: a scan from one side is said to be one, a shell is mad
     } catch (const Error& error) {
         CHECK(error.code() == ErrorCode::EmptyInput);  // nothing need be enclosed
     }
-    CHECK(test::contains(said, "--open shell"));
+    CHECK(test::contains(said, "`open` shell"));
     SolidOptions shell;
     shell.open = OpenMesh::Shell;
     shell.thickness = 3;

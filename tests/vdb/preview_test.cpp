@@ -54,16 +54,17 @@ TEST_CASE("renderPreview, renderSlice: options out of range are named", "[vdb][e
     const FloatGridPtr grid = meshToLevelSet(test::sphereMesh(10, 3), 1, 3, "sphere");
     PreviewOptions options;
     options.width = 3;
-    CHECK(test::contains(test::thrownBy([&] { renderPreview(*grid, options); }).message, "--size 3x600"));
+    CHECK(test::contains(test::thrownBy([&] { renderPreview(*grid, options); }).message,
+                         "`width` 3, height 600"));
     options = {};
     options.view = {0, 0, 0};
-    CHECK(test::contains(test::thrownBy([&] { renderPreview(*grid, options); }).message, "--view"));
+    CHECK(test::contains(test::thrownBy([&] { renderPreview(*grid, options); }).message, "`view`"));
     SliceOptions slice;
     slice.fraction = 2;
     CHECK(test::contains(test::thrownBy([&] {
                              renderSlice(*grid, {{0, 0, 0}, {1, 1, 1}}, slice);
                          }).message,
-                         "--slice"));
+                         "`fraction`"));
 }
 
 TEST_CASE("renderPreview: directions are streaks along them", "[vdb]") {

@@ -137,7 +137,7 @@ TEST_CASE("levelSetToMesh: sharp leaves smooth surfaces smooth, same bits for an
     CHECK(summarize(a).closedManifold());
     options.adaptivity = 0.5;
     CHECK(test::contains(test::thrownBy([&] { levelSetToMesh(*levelSet, options); }).message,
-                         "--sharp and --adaptivity"));
+                         "`sharp` and `adaptivity`"));
 }
 
 TEST_CASE("levelSetToMesh: sharp on fandisk", "[vdb][oracle]") {

@@ -24,7 +24,7 @@ LevelSet made(const char* kind, int resolution = 40) {
 
 SynthOptions sized(double x, double y, double z) {
     SynthOptions options;
-    options.size = {x, y, z};
+    options.size = TargetSize::multiples(x, y, z);
     return options;
 }
 

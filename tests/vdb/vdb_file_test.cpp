@@ -71,19 +71,19 @@ TEST_CASE("readVdbModel: picks surface, else the only level set, else by name", 
     CHECK(test::contains(thrown.message, "density (float), other (float), surface (float)"));
 }
 
-TEST_CASE("readVdbModel: a fog volume needs --iso and becomes a solid by it", "[vdb][property]") {
+TEST_CASE("readVdbModel: a fog volume needs `iso` and becomes a solid by it", "[vdb][property]") {
     const test::TemporaryFolder folder;
     writeVdb(folder.path("f.vdb"), {fog("density")}, {});
     const test::Thrown thrown = reading(folder.path("f.vdb"));
     CHECK(thrown.code == int(ErrorCode::Unusable));
-    CHECK(test::contains(thrown.message, "--iso"));
+    CHECK(test::contains(thrown.message, "`iso`"));
     VdbReadOptions options;
     options.iso = 0.5;
     const LevelSet model = readVdbModel(folder.path("f.vdb"), options);
     CHECK(solidVoxels(*model.grid) == Approx(4.18879 * 216).epsilon(0.04));
     CHECK(measureBand(*model.grid).gradientErrorMean < 0.05);
     options.iso = 7;
-    CHECK(test::contains(reading(folder.path("f.vdb"), options).message, "--iso 7"));
+    CHECK(test::contains(reading(folder.path("f.vdb"), options).message, "`iso` 7"));
 }
 
 TEST_CASE("readVdbModel: half precision, doubles, rotated and anisotropic transforms", "[vdb][property]") {

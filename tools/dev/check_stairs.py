@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Checks the stairs: no room includes a room above it, and OpenVDB and the other heavy libraries are seen
-only where they may be. Prints each breach as FILE:LINE and exits with 1 if there is one."""
+"""Checks the stairs: no room includes a room above it, OpenVDB and the other heavy libraries are seen
+only where they may be, and messages of the library name no flags of the command line. Prints each breach as FILE:LINE and exits with 1 if there is one."""
 import pathlib
 import re
 import sys
@@ -61,6 +61,13 @@ def main(root):
         for number, line in enumerate(path.read_text().splitlines(), 1):
             if banned.search(line):
                 breaches.append(f"{path.relative_to(root)}:{number}: {line.strip()}")
+    # Messages of the library name fields of option structs in backquotes; flags are the command line's.
+    flag = re.compile(r"(?<![\w-])--[a-z]")
+    literal = re.compile(r'"(?:[^"\\]|\\.)*"')
+    for path in sorted([*root.glob("libvdbsynth/**/*.h"), *root.glob("libvdbsynth/**/*.cpp")]):
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            if not line.lstrip().startswith("//") and any(flag.search(text) for text in literal.findall(line)):
+                breaches.append(f"{path.relative_to(root)}:{number}: names a flag; name the field in backquotes")
     print("\n".join(breaches) if breaches else "the stairs hold")
     return 1 if breaches else 0
 

@@ -32,7 +32,7 @@ void match(Run& run) {
     options.check = run.arguments.has("check");
     if (options.check && !run.arguments.has("tolerance"))
         throw Error(ErrorCode::InvalidOption, "--check: needs --tolerance; without it matches are exact");
-    options.indexFolder = indexFolder(run.arguments);
+    options.indexCache = indexFolder(run.arguments);
     if (!run.arguments.has("at"))
         throw Error(ErrorCode::InvalidOption,
                     "--at: missing; give the minimum corner of the block in the query's index space, for "

@@ -20,17 +20,6 @@
 namespace vdbsynth::cli {
 namespace {
 
-std::string sizeText(const SynthOptions& options) {
-    std::string text;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        char part[40];
-        std::snprintf(part, sizeof part, "%s%.10g%s", axis ? "," : "", options.size[axis],
-                      options.multiple[axis] ? "x" : "");
-        text += part;
-    }
-    return text;
-}
-
 void parseSize(const Arguments& arguments, SynthOptions& options) {
     const std::string text = arguments.text("size");
     if (text.empty())
@@ -50,10 +39,9 @@ void parseSize(const Arguments& arguments, SynthOptions& options) {
         requireOption(multiple ? value >= 1 && value <= 1e6 : value == std::floor(value) && value <= 1 << 20,
                       "size", text,
                       multiple ? "multiples of at least 1x" : "whole numbers of voxels up to 1048576");
-        options.size[axis] = value;
-        options.multiple[axis] = multiple;
+        options.size[int(axis)] = multiple ? Extent::multiple(value) : Extent::voxels(int(value));
     }
-    arguments.note("size", sizeText(options));
+    arguments.note("size", options.size.text());
 }
 
 void parseBorder(const Arguments& arguments, SynthOptions& options) {
@@ -91,7 +79,7 @@ SynthOptions parseOptions(const Arguments& arguments) {
     options.draft = arguments.has("draft");
     options.carried = carriedValues(arguments);
     options.method = parseMethod(arguments);
-    options.indexFolder = indexFolder(arguments);
+    options.indexCache = indexFolder(arguments);
     options.longestRun = arguments.real("longest-run", 0.3, 0.01, 1);
     if (arguments.has("longest-run") && (options.draft || options.method != SynthesisMethod::Default))
         throw Error(ErrorCode::InvalidOption, "--longest-run: needs --method default and no --draft");
@@ -198,15 +186,15 @@ void loadControls(Run& run, double voxelSize, SynthOptions& options) {
     const Arguments& arguments = run.arguments;
     const std::string which = arguments.text("which");
     if (extensionOf(which) == "vdb" || which.find(".vdb:") != std::string::npos) {
-        options.which = run.loadMask("which");
+        options.exemplarMap = run.loadMask("which");
     } else if (arguments.has("which")) {
         requireModelPath(which);
         ModelOptions model;
         model.voxelSize = voxelSize;
-        options.which = asControl(run.load(which, model).grid);
+        options.exemplarMap = asControl(run.load(which, model).grid);
     }
-    if (arguments.has("rotation-map")) options.rotation = run.loadMask("rotation-map");
-    if (arguments.has("scale-map")) options.scale = run.loadMask("scale-map");
+    if (arguments.has("rotation-map")) options.rotationMap = run.loadMask("rotation-map");
+    if (arguments.has("scale-map")) options.scaleMap = run.loadMask("scale-map");
     if (!arguments.has("guide")) return;
     options.guide = run.loadMask("guide");
     for (const std::string& path : arguments.all("exemplar-guide"))

@@ -12,13 +12,12 @@ namespace {
 void repeat(Run& run) {
     run.requireInputs(2, 65);
     const std::vector<std::string> paths = run.outputPaths();
-    requireOutputPaths(paths);
     const std::string mapPath = run.arguments.inputs[0];
     if (extensionOf(mapPath) != "vdb")
         throw Error(ErrorCode::InvalidOption, mapPath + ": a source map is a .vdb file");
     for (std::size_t i = 1; i < run.arguments.inputs.size(); ++i) requireModelPath(run.arguments.inputs[i]);
     ModelOutputOptions outputs;
-    outputs.adaptivity = run.arguments.real("adaptivity", 0, 0, 1);
+    outputs.adaptivity = run.arguments.real("adaptivity");
     ModelOptions modelOptions = run.modelOptions();
     modelOptions.carry = true;
     SourceMap map = readSourceMap(mapPath, run.context);
@@ -43,9 +42,6 @@ const Command kRepeat{"repeat",
                       "repeat MAP EXEMPLAR... -o OUT [options]",
                       "Apply a saved source map again",
                       "vdb_synth repeat map.vdb grid.vdb -o again.vdb",
-                      {carryOptions()[0],
-                       carryOptions()[1],
-                       {"adaptivity", "A", "0 to 1: merge flat parts of a mesh output, default 0"}},
                       repeat};
 
 }  // namespace vdbsynth::cli

@@ -129,8 +129,8 @@ std::string OutputSet::withoutTemporaries(std::string text) const {
 
 void OutputSet::commit() {
     // What was reserved and never written would replace a good file by an empty one.
-    const auto unwritten =
-        std::stable_partition(mEntries.begin(), mEntries.end(), [](const Entry& entry) { return entry.taken; });
+    const auto unwritten = std::stable_partition(mEntries.begin(), mEntries.end(),
+                                                 [](const Entry& entry) { return entry.taken; });
     for (auto entry = unwritten; entry != mEntries.end(); ++entry) ::unlink(entry->temporary.c_str());
     mEntries.erase(unwritten, mEntries.end());
     for (const Entry& entry : mEntries) syncToDisk(entry.temporary, entry.path);

@@ -207,10 +207,8 @@ void analogy(Run& run) {
 }  // namespace
 
 const Command kAnalogy{
-    "analogy",
-    "analogy A A2 [C C2 ...] B -o OUT [options]",
+    "analogy", "analogy A A2 [C C2 ...] B -o OUT [options]",
     "Transfer the texture that A2 has and A has not to another model B",
-    "vdb_synth analogy A.vdb A2.vdb bunny.off --resolution 200 --direction axis:z -o grooved.vdb",
-    analogy};
+    "vdb_synth analogy A.vdb A2.vdb bunny.off --resolution 200 --direction axis:z -o grooved.vdb", analogy};
 
 }  // namespace vdbsynth::cli

@@ -80,11 +80,8 @@ void compare(Run& run) {
 
 }  // namespace
 
-const Command kCompare{
-    "compare",
-    "compare REFERENCE OTHER... [-o OUT.json] [options]",
-    "Measure models and how far they are from a reference",
-    "vdb_synth compare grid.vdb more.vdb --page page.html",
-    compare};
+const Command kCompare{"compare", "compare REFERENCE OTHER... [-o OUT.json] [options]",
+                       "Measure models and how far they are from a reference",
+                       "vdb_synth compare grid.vdb more.vdb --page page.html", compare};
 
 }  // namespace vdbsynth::cli

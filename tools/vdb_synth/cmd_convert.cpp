@@ -14,8 +14,7 @@ void requireKind(const std::string& as, const std::string& path) {
     const std::string extension = extensionOf(path);
     const bool heights = extension == "png" || extension == "exr";
     const auto require = [&](bool good, const char* written) {
-        if (!good)
-            throw Error(ErrorCode::InvalidOption, "--as " + as + ": must be written to " + written);
+        if (!good) throw Error(ErrorCode::InvalidOption, "--as " + as + ": must be written to " + written);
     };
     if (as == "points") require(extension == "ply", ".ply");
     if (as == "levelset") require(extension == "vdb", ".vdb");
@@ -51,11 +50,8 @@ void convert(Run& run) {
 
 }  // namespace
 
-const Command kConvert{
-    "convert",
-    "convert IN -o OUT [options]",
-    "Turn any model into a level set, mesh or points",
-    "vdb_synth convert bunny.off -o bunny.vdb --resolution 200",
-    convert};
+const Command kConvert{"convert", "convert IN -o OUT [options]",
+                       "Turn any model into a level set, mesh or points",
+                       "vdb_synth convert bunny.off -o bunny.vdb --resolution 200", convert};
 
 }  // namespace vdbsynth::cli

@@ -31,10 +31,8 @@ void crop(Run& run) {
 
 }  // namespace
 
-const Command kCrop{"crop",
-                    "crop IN -o OUT --box BOX [options]",
+const Command kCrop{"crop", "crop IN -o OUT --box BOX [options]",
                     "Cut a box out of a model and record it as its domain",
-                    "vdb_synth crop grid.vdb -o part.vdb --box 8,8,8,39,39,39",
-                    crop};
+                    "vdb_synth crop grid.vdb -o part.vdb --box 8,8,8,39,39,39", crop};
 
 }  // namespace vdbsynth::cli

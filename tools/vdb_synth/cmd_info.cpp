@@ -175,10 +175,8 @@ void info(Run& run) {
 
 }  // namespace
 
-const Command kInfo{"info",
-                    "info IN [--json] [-o OUT.json]",
+const Command kInfo{"info", "info IN [--json] [-o OUT.json]",
                     "Say what is in a file: grids or faces, sizes, ranges, validity",
-                    "vdb_synth info grid.vdb",
-                    info};
+                    "vdb_synth info grid.vdb", info};
 
 }  // namespace vdbsynth::cli

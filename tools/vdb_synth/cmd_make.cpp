@@ -89,12 +89,11 @@ std::string summary() {
 
 }  // namespace
 
-const Command kMake{
-    "make",
-    "make KIND OUT [OUT2] [options]",
-    summary(),
-    "vdb_synth make grid grid.vdb --seed 3",
-    make,
-    /* inputsAreOutputs= */ true};
+const Command kMake{"make",
+                    "make KIND OUT [OUT2] [options]",
+                    summary(),
+                    "vdb_synth make grid grid.vdb --seed 3",
+                    make,
+                    /* inputsAreOutputs= */ true};
 
 }  // namespace vdbsynth::cli

@@ -31,7 +31,8 @@ GridPtr makeBall(const Run& run) {
 }
 
 GridPtr makeRange(Run& run) {
-    if (!run.arguments.has("range")) throw Error(ErrorCode::InvalidOption, "mask range: give --range LOW,HIGH");
+    if (!run.arguments.has("range"))
+        throw Error(ErrorCode::InvalidOption, "mask range: give --range LOW,HIGH");
     const auto [low, high] = run.arguments.range("range");
     const std::string path = run.arguments.inputs[1];
     if (extensionOf(path) != "vdb")
@@ -75,11 +76,8 @@ void mask(Run& run) {
 
 }  // namespace
 
-const Command kMask{
-    "mask",
-    "mask box|ball|inside|range [MODEL] -o OUT.vdb [options]",
-    "Make a mask grid: a box, a ball, a model's inside, a grid's range",
-    "vdb_synth mask inside bunny.off -o inside.vdb --resolution 64",
-    mask};
+const Command kMask{"mask", "mask box|ball|inside|range [MODEL] -o OUT.vdb [options]",
+                    "Make a mask grid: a box, a ball, a model's inside, a grid's range",
+                    "vdb_synth mask inside bunny.off -o inside.vdb --resolution 64", mask};
 
 }  // namespace vdbsynth::cli

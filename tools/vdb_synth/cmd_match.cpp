@@ -70,11 +70,8 @@ void match(Run& run) {
 
 }  // namespace
 
-const Command kMatch{
-    "match",
-    "match EXEMPLAR QUERY --block N --at I,J,K [-o OUT.json] [options]",
-    "Find the blocks of an exemplar that are most similar to one of another model, exactly",
-    "vdb_synth match grid.vdb more.vdb --block 16 --at 40,8,0 --count 3",
-    match};
+const Command kMatch{"match", "match EXEMPLAR QUERY --block N --at I,J,K [-o OUT.json] [options]",
+                     "Find the blocks of an exemplar that are most similar to one of another model, exactly",
+                     "vdb_synth match grid.vdb more.vdb --block 16 --at 40,8,0 --count 3", match};
 
 }  // namespace vdbsynth::cli

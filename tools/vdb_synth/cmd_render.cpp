@@ -34,8 +34,7 @@ void render(Run& run) {
     if (run.arguments.has("directions") && run.arguments.has("slice"))
         throw Error(ErrorCode::InvalidOption, "--directions: are drawn on a surface, not on a --slice");
     requireModelPath(run.arguments.inputs[0]);
-    if (run.arguments.has("directions"))
-        preview.directions = run.loadGrid("directions");
+    if (run.arguments.has("directions")) preview.directions = run.loadGrid("directions");
     const LevelSet model = run.load(run.arguments.inputs[0]);
     const std::string temporary = run.outputs().add(path);
     writePng(temporary, run.arguments.has("slice")
@@ -46,11 +45,7 @@ void render(Run& run) {
 
 }  // namespace
 
-const Command kRender{
-    "render",
-    "render IN -o PNG [options]",
-    "Draw a shaded picture or a slice of any model",
-    "vdb_synth render more.vdb -o more.png",
-    render};
+const Command kRender{"render", "render IN -o PNG [options]", "Draw a shaded picture or a slice of any model",
+                      "vdb_synth render more.vdb -o more.png", render};
 
 }  // namespace vdbsynth::cli

@@ -38,10 +38,7 @@ void repeat(Run& run) {
 
 }  // namespace
 
-const Command kRepeat{"repeat",
-                      "repeat MAP EXEMPLAR... -o OUT [options]",
-                      "Apply a saved source map again",
-                      "vdb_synth repeat map.vdb grid.vdb -o again.vdb",
-                      repeat};
+const Command kRepeat{"repeat", "repeat MAP EXEMPLAR... -o OUT [options]", "Apply a saved source map again",
+                      "vdb_synth repeat map.vdb grid.vdb -o again.vdb", repeat};
 
 }  // namespace vdbsynth::cli

@@ -78,9 +78,10 @@ LevelSet holeOf(Run& run, const LevelSet& partial, const ModelOptions& like) {
 void fill(Run& run) {
     const Arguments& arguments = run.arguments;
     run.requireInputs(0, 1);
-    for (const char* option : {"size", "border", "exemplar-box", "exemplar-mask", "drift", "draft", "method",
-                               "carry", "carry-blend", "exemplar-map", "guide", "exemplar-guide", "guide-weight",
-                               "longest-run", "rotation-map", "scale-map", "half-width", "index-cache"})
+    for (const char* option :
+         {"size", "border", "exemplar-box", "exemplar-mask", "drift", "draft", "method", "carry",
+          "carry-blend", "exemplar-map", "guide", "exemplar-guide", "guide-weight", "longest-run",
+          "rotation-map", "scale-map", "half-width", "index-cache"})
         if (arguments.has(option))
             throw Error(ErrorCode::InvalidOption,
                         std::string("--") + option + ": has no meaning with --keep, which fills holes");
@@ -217,8 +218,6 @@ void synth(Run& run) {
 const Command kSynth{
     "synth",
     "synth EXEMPLAR... -o OUT --size X,Y,Z [options] | synth [EXEMPLAR] --keep PARTIAL --hole MODEL -o OUT",
-    "Make more geometry like an exemplar's",
-    "vdb_synth synth grid.vdb -o more.vdb --size 2x,2x,1x",
-    synth};
+    "Make more geometry like an exemplar's", "vdb_synth synth grid.vdb -o more.vdb --size 2x,2x,1x", synth};
 
 }  // namespace vdbsynth::cli

@@ -10,13 +10,20 @@ constexpr std::size_t kColumn = 30, kWidth = 110;
 
 const char* headingOf(Group group) {
     switch (group) {
-        case Group::Result: return "Result";
-        case Group::Method: return "Method";
-        case Group::Controls: return "Controls";
-        case Group::Output: return "Output";
-        case Group::Input: return "Input models";
-        case Group::Raster: return "Images and volumes as input";
-        case Group::Running: return "Running";
+        case Group::Result:
+            return "Result";
+        case Group::Method:
+            return "Method";
+        case Group::Controls:
+            return "Controls";
+        case Group::Output:
+            return "Output";
+        case Group::Input:
+            return "Input models";
+        case Group::Raster:
+            return "Images and volumes as input";
+        case Group::Running:
+            return "Running";
     }
     return "";
 }
@@ -43,8 +50,8 @@ std::string wrapped(const std::string& text) {
 }
 
 std::string lineOf(const Option& option) {
-    std::string left = "  " + (option.letter ? std::string("-") + option.letter + ", " : std::string()) + "--" +
-                       option.name + (option.argument.empty() ? "" : " " + option.argument);
+    std::string left = "  " + (option.letter ? std::string("-") + option.letter + ", " : std::string()) +
+                       "--" + option.name + (option.argument.empty() ? "" : " " + option.argument);
     if (left.size() + 1 < kColumn)
         left.resize(kColumn, ' ');
     else

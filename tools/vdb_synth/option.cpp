@@ -10,17 +10,23 @@ namespace {
 
 // Whole numbers in full, others as short as they are known.
 std::string numberText(double value) {
-    if (value == std::floor(value) && std::abs(value) < 1e15) return std::to_string(static_cast<long long>(value));
+    if (value == std::floor(value) && std::abs(value) < 1e15)
+        return std::to_string(static_cast<long long>(value));
     return exactText(value);
 }
 
 std::string unitText(Unit unit) {
     switch (unit) {
-        case Unit::None: return "";
-        case Unit::Voxels: return " (voxels)";
-        case Unit::World: return " (world)";
-        case Unit::Pixels: return " (pixels)";
-        case Unit::Radians: return " (radians)";
+        case Unit::None:
+            return "";
+        case Unit::Voxels:
+            return " (voxels)";
+        case Unit::World:
+            return " (world)";
+        case Unit::Pixels:
+            return " (pixels)";
+        case Unit::Radians:
+            return " (radians)";
     }
     return "";
 }
@@ -80,8 +86,10 @@ bool readsPath(const Option& option) {
         case Kind::Grid:
         case Kind::ModelOrGrid:
         case Kind::Direction:
-        case Kind::Hole: return true;
-        default: return false;
+        case Kind::Hole:
+            return true;
+        default:
+            return false;
     }
 }
 
@@ -104,34 +112,53 @@ std::string allowedText(const Option& option) {
         case Kind::Choice:
             return listed(option.choices, "", false) +
                    (option.orExtension ? "; for standard input also an extension" : "");
-        case Kind::AxisChoices: return listed(option.choices, "", false) + ", once or for each axis with commas";
-        case Kind::Axes: return "axes such as x, xy or xyz, or none";
-        case Kind::Whole: return allowedNumber(option, option.odd ? "an odd number" : "a whole number");
-        case Kind::Real: return allowedNumber(option, "a number");
-        case Kind::Seed: return "a whole number from 0 to 18446744073709551615";
-        case Kind::Bytes: return "at least 1M, for example 4G";
-        case Kind::Triple: return "three numbers with commas, for example 1,2,3";
+        case Kind::AxisChoices:
+            return listed(option.choices, "", false) + ", once or for each axis with commas";
+        case Kind::Axes:
+            return "axes such as x, xy or xyz, or none";
+        case Kind::Whole:
+            return allowedNumber(option, option.odd ? "an odd number" : "a whole number");
+        case Kind::Real:
+            return allowedNumber(option, "a number");
+        case Kind::Seed:
+            return "a whole number from 0 to 18446744073709551615";
+        case Kind::Bytes:
+            return "at least 1M, for example 4G";
+        case Kind::Triple:
+            return "three numbers with commas, for example 1,2,3";
         case Kind::WholeTriple:
-            return "three whole numbers " + std::string(rangeText(option).empty() ? "" : "from " + rangeText(option) + " ") +
+            return "three whole numbers " +
+                   std::string(rangeText(option).empty() ? "" : "from " + rangeText(option) + " ") +
                    "with commas, for example 64,64,32";
-        case Kind::Range: return "a smaller and a larger number with a comma, for example -1,0.5";
-        case Kind::Box: return "six whole numbers i,j,k,I,J,K, every minimum at most its maximum";
+        case Kind::Range:
+            return "a smaller and a larger number with a comma, for example -1,0.5";
+        case Kind::Box:
+            return "six whole numbers i,j,k,I,J,K, every minimum at most its maximum";
         case Kind::Sizes:
-            return "three sizes with commas, each in voxels (1 to 1048576) or a multiple (from 1x), for example "
+            return "three sizes with commas, each in voxels (1 to 1048576) or a multiple (from 1x), for "
+                   "example "
                    "2x,2x,1x or 128,128,64";
         case Kind::Pixels:
             return "WIDTHxHEIGHT, each from " + rangeText(option) + " (pixels)";
-        case Kind::Slice: return "an axis and a fraction of the domain from 0 to 1, for example z=0.5";
-        case Kind::Labels: return "numbers and ranges with commas, for example 1,4,10-20";
-        case Kind::Process: return "such as \"make balls\" or \"make balls --feature 12\", with a feature from 4 to 256";
+        case Kind::Slice:
+            return "an axis and a fraction of the domain from 0 to 1, for example z=0.5";
+        case Kind::Labels:
+            return "numbers and ranges with commas, for example 1,4,10-20";
+        case Kind::Process:
+            return "such as \"make balls\" or \"make balls --feature 12\", with a feature from 4 to 256";
         case Kind::Direction:
-            return "axis:x|y|z or axis:-x, around:x|y|z, radial, curvature, a grid FILE.vdb[:GRID], or strokes in "
+            return "axis:x|y|z or axis:-x, around:x|y|z, radial, curvature, a grid FILE.vdb[:GRID], or "
+                   "strokes in "
                    "a .csv, .json or .ply file";
-        case Kind::Hole: return "a model, a box i,j,k,I,J,K, or auto";
+        case Kind::Hole:
+            return "a model, a box i,j,k,I,J,K, or auto";
         case Kind::File:
-        case Kind::Output: return "a " + extensionList(option) + " file";
-        case Kind::Grid: return "a .vdb file, or FILE.vdb:GRID for one of its grids";
-        default: return "given";
+        case Kind::Output:
+            return "a " + extensionList(option) + " file";
+        case Kind::Grid:
+            return "a .vdb file, or FILE.vdb:GRID for one of its grids";
+        default:
+            return "given";
     }
 }
 

@@ -47,8 +47,8 @@ struct Choice {
 /// Ends of ranges that are open: not said in help.
 inline constexpr double kAboveZero = 1e-30, kUnbounded = 1e30;
 
-/// One option, described once: from this come parsing, validation, help and metadata. The table is in options.h.
-/// The functions at the end fill a description in, so that the table reads as sentences.
+/// One option, described once: from this come parsing, validation, help and metadata. The table is in
+/// options.h. The functions at the end fill a description in, so that the table reads as sentences.
 struct Option {
     std::string name;      ///< without dashes
     std::string argument;  ///< what --help shows for its value; empty for a flag
@@ -60,14 +60,14 @@ struct Option {
     double low = -kUnbounded, high = kUnbounded;
     bool odd = false;
     std::vector<Choice> choices;
-    bool orExtension = false;             ///< of a Choice: also the extension of any kind of file that is read
+    bool orExtension = false;  ///< of a Choice: also the extension of any kind of file that is read
     std::vector<std::string> extensions;  ///< without dots
     std::string initial;                  ///< the value where none is given; empty: none
-    std::string otherwise;                ///< what holds where none is given, in words, if that is no fixed value
-    std::vector<std::string> commands;    ///< that take it
-    bool repeats = false;                 ///< may be given several times
-    bool incidental = false;              ///< changes how a run goes or where it writes, not what it makes
-    bool valueOptional = false;           ///< the next word is its value only if it has one of `extensions`
+    std::string otherwise;  ///< what holds where none is given, in words, if that is no fixed value
+    std::vector<std::string> commands;  ///< that take it
+    bool repeats = false;               ///< may be given several times
+    bool incidental = false;            ///< changes how a run goes or where it writes, not what it makes
+    bool valueOptional = false;         ///< the next word is its value only if it has one of `extensions`
     /// Fields of the library's option structs that it sets; errors of the library name those.
     std::vector<std::string> fields;
     std::vector<std::string> oldNames;  ///< refused, with a hint at the present one

@@ -49,7 +49,8 @@ inline Option axisChoices(const std::string& name, const std::string& argument, 
     made.choices = std::move(choices);
     return made;
 }
-inline Option file(const std::string& name, const std::string& argument, std::vector<std::string> extensions) {
+inline Option file(const std::string& name, const std::string& argument,
+                   std::vector<std::string> extensions) {
     Option made = option(Kind::File, name, argument);
     made.extensions = std::move(extensions);
     return made;
@@ -57,7 +58,8 @@ inline Option file(const std::string& name, const std::string& argument, std::ve
 inline Option grid(const std::string& name) {
     return option(Kind::Grid, name, "FILE.vdb[:GRID]");
 }
-inline Option output(const std::string& name, const std::string& argument, std::vector<std::string> extensions) {
+inline Option output(const std::string& name, const std::string& argument,
+                     std::vector<std::string> extensions) {
     Option made = option(Kind::Output, name, argument).in(Group::Output);
     made.extensions = std::move(extensions);
     return made;

@@ -24,8 +24,8 @@ public:
     std::vector<std::string> inputs;
     std::map<std::string, std::vector<std::string>> values;  ///< flags hold one "true"
 
-    /// Refuses every value that is not what its option allows, whether or not the command comes to read it. No
-    /// file is looked at. @throw Error InvalidOption that names the option, the value and what is allowed
+    /// Refuses every value that is not what its option allows, whether or not the command comes to read it.
+    /// No file is looked at. @throw Error InvalidOption that names the option, the value and what is allowed
     void check() const;
     /// What makes the result, defaults included, each value in one form however it was typed; of paths the
     /// names of files only. Options that are `incidental` are left out.
@@ -55,8 +55,8 @@ private:
     std::string mCommand;
 };
 
-/// Parses a command line (Boost.Program_options): `-o X`, `--option X`, `--option=X` and `-option X`. Values are
-/// not looked at, see Arguments::check.
+/// Parses a command line (Boost.Program_options): `-o X`, `--option X`, `--option=X` and `-option X`. Values
+/// are not looked at, see Arguments::check.
 /// @throw Error InvalidOption (unknownOption; a missing value; one given twice)
 Arguments parseArguments(const std::string& command, const std::vector<std::string>& words);
 

@@ -6,7 +6,6 @@
 #include "libvdbsynth/pipeline/analogy.h"
 #include "libvdbsynth/pipeline/model.h"
 #include "libvdbsynth/pipeline/outputs.h"
-#include "libvdbsynth/vdb/level_set.h"
 
 #include <algorithm>
 #include <charconv>
@@ -50,11 +49,19 @@ std::string normalWhole(const Option& option, const std::string& given) {
     double real = 0;
     // 64.0 and 1e2 are whole numbers too.
     if (!readWhole(given, value)) {
-        if (!readReal(given, real) || real != std::floor(real) || std::abs(real) > 1e15) refuseValue(option, given);
+        if (!readReal(given, real) || real != std::floor(real) || std::abs(real) > 1e15)
+            refuseValue(option, given);
         value = static_cast<long long>(real);
     }
     if (!within(option, double(value)) || (option.odd && value % 2 == 0)) refuseValue(option, given);
     return std::to_string(value);
+}
+
+std::string normalBox(const IndexBox& box) {
+    std::vector<std::string> parts;
+    for (const Index3& corner : {box.min, box.max})
+        for (int axis = 0; axis < 3; ++axis) parts.push_back(std::to_string(corner[axis]));
+    return joined(parts);
 }
 
 std::string normalSizes(const Option& option, const std::string& given) {
@@ -62,9 +69,9 @@ std::string normalSizes(const Option& option, const std::string& given) {
     if (!readSizes(given, sizes)) refuseValue(option, given);
     std::vector<std::string> parts;
     for (const SizeValue& size : sizes) {
-        const bool good = size.multiple ? size.value >= 1 && size.value <= 1e6
-                                        : size.value == std::floor(size.value) && size.value >= 1 &&
-                                              size.value <= 1 << 20;
+        const bool good =
+            size.multiple ? size.value >= 1 && size.value <= 1e6
+                          : size.value == std::floor(size.value) && size.value >= 1 && size.value <= 1 << 20;
         if (!good) refuseValue(option, given);
         parts.push_back(size.multiple ? exactText(size.value) + "x"
                                       : std::to_string(static_cast<long long>(size.value)));
@@ -98,7 +105,8 @@ std::string normalLabels(const Option& option, const std::string& given) {
     if (!readLabels(given, labels)) refuseValue(option, given);
     std::vector<std::string> parts;
     for (const auto& [low, high] : labels)
-        parts.push_back(low == high ? exactText(float(low)) : exactText(float(low)) + "-" + exactText(float(high)));
+        parts.push_back(low == high ? exactText(float(low))
+                                    : exactText(float(low)) + "-" + exactText(float(high)));
     return joined(parts);
 }
 
@@ -113,7 +121,8 @@ std::string normalScalar(const Option& option, const std::string& given) {
     double real = 0;
     std::uint64_t wide = 0;
     switch (option.kind) {
-        case Kind::Whole: return normalWhole(option, given);
+        case Kind::Whole:
+            return normalWhole(option, given);
         case Kind::Seed:
             if (!readSeed(given, wide)) refuseValue(option, given);
             return std::to_string(wide);
@@ -133,7 +142,8 @@ std::string normalWords(const Option& option, const std::string& given) {
     switch (option.kind) {
         case Kind::Choice:
             // An extension says how to read standard input, which makes no other result.
-            if (option.orExtension && !isChoice(option, given) && isKnownExtension(given)) return option.initial;
+            if (option.orExtension && !isChoice(option, given) && isKnownExtension(given))
+                return option.initial;
             if (!isChoice(option, given)) refuseValue(option, given);
             return given;
         case Kind::AxisChoices: {
@@ -162,8 +172,8 @@ std::string normalOutput(const Option& option, const std::string& given) {
     if (option.extensions.empty()) {
         requireOutputPaths({given});
     } else if (option.extensions.front() != "*" && !has(option.extensions, extensionOf(given))) {
-        throw Error(ErrorCode::InvalidOption, "--" + option.name + " " + given + ": unknown extension; must be " +
-                                                  allowedText(option));
+        throw Error(ErrorCode::InvalidOption,
+                    "--" + option.name + " " + given + ": unknown extension; must be " + allowedText(option));
     }
     return fileNameOf(given);
 }
@@ -178,14 +188,15 @@ std::string normalPath(const Option& option, const std::string& given) {
             return fileOnly(given);
         case Kind::Hole:
             if (given == "auto") return given;
-            if (readBox(given, box)) return boxText(box);
+            if (readBox(given, box)) return normalBox(box);
             if (!isModelPath(given)) refuseValue(option, given);
             return fileOnly(given);
         case Kind::Grid:
             if (!namesGrid(given)) refuseValue(option, given);
             return fileOnly(given);
         case Kind::File:
-            if (!option.extensions.empty() && !has(option.extensions, extensionOf(given))) refuseValue(option, given);
+            if (!option.extensions.empty() && !has(option.extensions, extensionOf(given)))
+                refuseValue(option, given);
             return fileOnly(given);
         default:
             if (option.kind == Kind::Model || !namesGrid(given)) requireModelPath(given);
@@ -196,33 +207,42 @@ std::string normalPath(const Option& option, const std::string& given) {
 }  // namespace
 
 void refuseValue(const Option& option, const std::string& given) {
-    throw Error(ErrorCode::InvalidOption, "--" + option.name + " " + given + ": must be " + allowedText(option));
+    throw Error(ErrorCode::InvalidOption,
+                "--" + option.name + " " + given + ": must be " + allowedText(option));
 }
 
 std::string normalValue(const Option& option, const std::string& given) {
     IndexBox box;
     if (readsPath(option)) return normalPath(option, given);
     switch (option.kind) {
-        case Kind::Flag: return "true";
+        case Kind::Flag:
+            return "true";
         case Kind::Folder:
         case Kind::Text:
             if (given.empty()) refuseValue(option, given);
             return given;
-        case Kind::Output: return normalOutput(option, given);
+        case Kind::Output:
+            return normalOutput(option, given);
         case Kind::Box:
             if (!readBox(given, box)) refuseValue(option, given);
-            return boxText(box);
-        case Kind::Sizes: return normalSizes(option, given);
-        case Kind::Pixels: return normalPixels(option, given);
-        case Kind::Labels: return normalLabels(option, given);
+            return normalBox(box);
+        case Kind::Sizes:
+            return normalSizes(option, given);
+        case Kind::Pixels:
+            return normalPixels(option, given);
+        case Kind::Labels:
+            return normalLabels(option, given);
         case Kind::Triple:
         case Kind::WholeTriple:
-        case Kind::Range: return normalNumbers(option, given);
+        case Kind::Range:
+            return normalNumbers(option, given);
         case Kind::Whole:
         case Kind::Real:
         case Kind::Seed:
-        case Kind::Bytes: return normalScalar(option, given);
-        default: return normalWords(option, given);
+        case Kind::Bytes:
+            return normalScalar(option, given);
+        default:
+            return normalWords(option, given);
     }
 }
 

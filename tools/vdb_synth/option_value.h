@@ -59,8 +59,8 @@ std::vector<std::string> splitAtCommas(const std::string& text);
 [[noreturn]] void refuseValue(const Option& option, const std::string& given);
 
 /// Refuses what is not of the option's kind or out of its range; looks at no file.
-/// @return the value in the one form that metadata holds: however it was typed the same, and of paths that are
-/// read the names of files only
+/// @return the value in the one form that metadata holds: however it was typed the same, and of paths that
+/// are read the names of files only
 /// @throw Error InvalidOption that names the option, the value and what is allowed
 std::string normalValue(const Option& option, const std::string& given);
 

@@ -124,7 +124,8 @@ std::string unknownOption(const std::string& command, const std::string& name, c
     if (!others.empty()) return shown + ": is no option of " + command + "; " + others;
     const std::string near = nearestName(name, names);
     return shown + ": unknown option of " + command +
-           (near.empty() ? "; see vdb_synth " + command + " --help" : "; did you mean " + dashes + near + "?");
+           (near.empty() ? "; see vdb_synth " + command + " --help"
+                         : "; did you mean " + dashes + near + "?");
 }
 
 std::string inFlags(const std::string& text, const std::string& command) {

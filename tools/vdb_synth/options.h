@@ -19,7 +19,8 @@ const Option* findOption(const std::string& command, const std::string& name);
 /// Says why a command does not take an option: its name is another now, other commands take it, or it is
 /// unknown, with the nearest name of this command.
 /// @return "--NAME: ...", without the dashes where `dashes` is empty
-std::string unknownOption(const std::string& command, const std::string& name, const std::string& dashes = "--");
+std::string unknownOption(const std::string& command, const std::string& name,
+                          const std::string& dashes = "--");
 
 /// The nearest of `names` to `word`, empty if none is near.
 std::string nearestName(const std::string& word, const std::vector<std::string>& names);

@@ -28,7 +28,8 @@ std::vector<Option> resultTable() {
             .says("typical feature; a larger domain holds more of them")
             .otherwiseIs("the kind's own")
             .takenBy({"make"}),
-        axisChoices("border", "KIND", {{"cut", ""}, {"object", ""}, {"tile", "the result repeats without a seam"}})
+        axisChoices("border", "KIND",
+                    {{"cut", ""}, {"object", ""}, {"tile", "the result repeats without a seam"}})
             .says("how a growing axis ends")
             .otherwiseIs("cut where a domain is recorded, else object")
             .takenBy({"synth"}),
@@ -36,8 +37,12 @@ std::vector<Option> resultTable() {
             .measuredIn(Unit::Voxels)
             .says("i,j,k,I,J,K in index space, both corners inclusive")
             .takenBy({"crop", "mask"})
-            .butFor("mask", [](Option& o) { o.says("for box: i,j,k,I,J,K in index space, both corners inclusive"); }),
-        option(Kind::Triple, "center", "X,Y,Z").measuredIn(Unit::World).says("for ball: its centre").takenBy({"mask"}),
+            .butFor("mask",
+                    [](Option& o) { o.says("for box: i,j,k,I,J,K in index space, both corners inclusive"); }),
+        option(Kind::Triple, "center", "X,Y,Z")
+            .measuredIn(Unit::World)
+            .says("for ball: its centre")
+            .takenBy({"mask"}),
         worldLength("radius", "R").says("for ball: its radius").takenBy({"mask"}),
         option(Kind::Range, "range", "LOW,HIGH")
             .says("for range: active voxels of --grid with a value from LOW to HIGH")
@@ -51,7 +56,8 @@ std::vector<Option> resultTable() {
             .takenBy({"render"}),
         whole("samples", "N", 1, 64).says("rays per pixel at edges").initially("4").takenBy({"render"}),
         option(Kind::Grid, "directions", "FILE.vdb[:GRID]")
-            .says("draw a direction field, such as analogy --write-directions writes, as streaks on the surface")
+            .says("draw a direction field, such as analogy --write-directions writes, as streaks on the "
+                  "surface")
             .takenBy({"render"}),
     };
 }
@@ -75,14 +81,17 @@ std::vector<Option> synthTable() {
             .says("how to synthesize")
             .initially("default")
             .takenBy({"synth"}),
-        flag("draft").says("a quick look: search at half the resolution, distances are approximate").takenBy({"synth"}),
+        flag("draft")
+            .says("a quick look: search at half the resolution, distances are approximate")
+            .takenBy({"synth"}),
         whole("drift", "D", 0, 1 << 20)
             .measuredIn(Unit::Voxels)
             .says("how far sources may be from their own place along axes at 1x")
             .initially("0")
             .takenBy({"synth"}),
         real("longest-run", "S", 0.01, 1)
-            .says("largest share of the exemplar to copy in one piece; less gives newer results with more seams")
+            .says("largest share of the exemplar to copy in one piece; less gives newer results with more "
+                  "seams")
             .initially("0.3")
             .takenBy({"synth"}),
         option(Kind::Folder, "index-cache", "FOLDER")
@@ -102,13 +111,15 @@ std::vector<Option> controlTable() {
             .says("copy only from where this grid is active; its box is the domain (of the first exemplar)")
             .takenBy({"synth"}),
         option(Kind::ModelOrGrid, "exemplar-map", "FILE")
-            .says("which exemplar goes where in the result: a .vdb with a grid of labels (0 is the first exemplar), or a "
+            .says("which exemplar goes where in the result: a .vdb with a grid of labels (0 is the first "
+                  "exemplar), or a "
                   "model, inside which the second is used, outside it the first")
             .was("which")
             .sets({"which", "exemplarMap"})
             .takenBy({"synth"}),
         grid("guide")
-            .says("scalar grid over the result; sources whose --exemplar-guide value is similar are preferred")
+            .says(
+                "scalar grid over the result; sources whose --exemplar-guide value is similar are preferred")
             .takenBy({"synth"}),
         grid("exemplar-guide")
             .says("the same scalar over the exemplar, once for each exemplar")
@@ -121,7 +132,8 @@ std::vector<Option> controlTable() {
             .takenBy({"synth"}),
         grid("rotation-map")
             .measuredIn(Unit::Radians)
-            .says("grid over the result: how far to rotate what is copied, rotation vectors or angles about z")
+            .says(
+                "grid over the result: how far to rotate what is copied, rotation vectors or angles about z")
             .sets({"rotation", "rotationMap"})
             .takenBy({"synth"}),
         grid("scale-map")
@@ -129,11 +141,13 @@ std::vector<Option> controlTable() {
             .sets({"scale", "scaleMap"})
             .takenBy({"synth"}),
         option(Kind::Model, "keep", "PARTIAL")
-            .says("fill the holes of this model instead of making a larger one; without EXEMPLAR from the model itself")
+            .says("fill the holes of this model instead of making a larger one; without EXEMPLAR from the "
+                  "model itself")
             .sets({"partial", "keep"})
             .takenBy({"synth"}),
         option(Kind::Hole, "hole", "MODEL")
-            .says("what to fill with --keep: the inside of a model, a box i,j,k,I,J,K of the kept model's voxels, or auto: "
+            .says("what to fill with --keep: the inside of a model, a box i,j,k,I,J,K of the kept model's "
+                  "voxels, or auto: "
                   "a ball around each loop of open edges")
             .takenBy({"synth"}),
     };
@@ -143,8 +157,10 @@ std::vector<Option> analogyTable() {
     return {
         option(Kind::Direction, "direction", "SPEC")
             .in(Group::Controls)
-            .says("direction of the texture over B: axis:x, axis:-z, around:y, radial, curvature, a grid of vectors or "
-                  "scalars FILE.vdb[:GRID], or strokes (world): .csv rows x,y,z,dx,dy,dz, .json, .ply points with normals")
+            .says("direction of the texture over B: axis:x, axis:-z, around:y, radial, curvature, a grid of "
+                  "vectors or "
+                  "scalars FILE.vdb[:GRID], or strokes (world): .csv rows x,y,z,dx,dy,dz, .json, .ply points "
+                  "with normals")
             .otherwiseIs("curvature")
             .takenBy({"analogy"}),
         option(Kind::Direction, "exemplar-direction", "SPEC")
@@ -189,14 +205,20 @@ std::vector<Option> analogyTable() {
             .says("preference for sources that continue a neighbour's over the nearest match")
             .initially("0.5")
             .takenBy({"analogy"}),
-        flag("exact").says("search the nearest match exactly, among reduced features (slower)").sets({"slack", "exact"}).takenBy({"analogy"}),
-        flag("causal").says("compare only what lies behind a voxel in the sweep, as in the paper").takenBy({"analogy"}),
+        flag("exact")
+            .says("search the nearest match exactly, among reduced features (slower)")
+            .sets({"slack", "exact"})
+            .takenBy({"analogy"}),
+        flag("causal")
+            .says("compare only what lies behind a voxel in the sweep, as in the paper")
+            .takenBy({"analogy"}),
         flag("straight")
             .says("straight cubes as neighbourhoods, as in the paper, instead of curvature-adapted ones")
             .sets({"bent", "straight"})
             .takenBy({"analogy"}),
         flag("naive")
-            .says("neighbourhoods along the grid's axes, as the paper's first variant, for filters such as blur; "
+            .says("neighbourhoods along the grid's axes, as the paper's first variant, for filters such as "
+                  "blur; "
                   "grids of numbers (fog volumes, scalars) stay numbers")
             .sets({"aligned", "naive"})
             .takenBy({"analogy"}),
@@ -220,16 +242,22 @@ std::vector<Option> matchTable() {
             .says("accept matches whose difference is at most 1 + E times the least; 0 is exact")
             .initially("0")
             .takenBy({"match"}),
-        flag("check").says("with --tolerance: also search exactly and print how close the matches are (slower)").takenBy({"match"}),
+        flag("check")
+            .says("with --tolerance: also search exactly and print how close the matches are (slower)")
+            .takenBy({"match"}),
         option(Kind::Axes, "stationary", "AXES")
             .says("axes along which the reference is stationary: xyz, xy ... or none")
             .otherwiseIs("those whose two faces both cut the solid")
             .takenBy({"compare"}),
         option(Kind::Process, "process", "\"make KIND\"")
-            .says("process that the reference is a sample of, such as \"make balls --feature 12\": compare with fresh "
+            .says("process that the reference is a sample of, such as \"make balls --feature 12\": compare "
+                  "with fresh "
                   "samples of it")
             .takenBy({"compare"}),
-        whole("fresh", "N", 2, 100).says("number of fresh samples, with --process").initially("10").takenBy({"compare"}),
+        whole("fresh", "N", 2, 100)
+            .says("number of fresh samples, with --process")
+            .initially("10")
+            .takenBy({"compare"}),
         file("map", "FILE.vdb", {"vdb"})
             .says("source map of OTHER")
             .otherwiseIs("the one in OTHER")
@@ -242,7 +270,8 @@ std::vector<Option> matchTable() {
 std::vector<Option> methodOptionTable() {
     std::vector<Option> table = resultTable();
     const auto append = [&table](std::vector<Option> more, Group group) {
-        for (Option& option : more) table.push_back(option.group == Group::Result ? option.in(group) : option);
+        for (Option& option : more)
+            table.push_back(option.group == Group::Result ? option.in(group) : option);
     };
     append(synthTable(), Group::Method);
     append(analogyTable(), Group::Method);

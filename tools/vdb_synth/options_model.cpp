@@ -21,20 +21,22 @@ std::vector<Option> inputTable() {
             .says("side of a voxel; a VDB is resampled")
             .takenBy(with(kModel, {"make"}))
             .butFor("make", [](Option& o) { o.says("side of a voxel").initially("1").in(Group::Result); })
-            .butFor("mask", [](Option& o) {
-                o.says("side of a voxel; default 1 for box and ball; with inside a VDB is resampled");
-            })
+            .butFor("mask",
+                    [](Option& o) {
+                        o.says("side of a voxel; default 1 for box and ball; with inside a VDB is resampled");
+                    })
             .butFor("analogy", [](Option& o) { o.says("side of a voxel of B; a VDB is resampled"); }),
         whole("resolution", "N", 2, 100000)
             .in(Group::Input)
             .says("voxels along the longest side")
             .otherwiseIs("128 for meshes and points, an image's pixels, a volume's cells")
             .takenBy(with(kModel, {"make"}))
-            .butFor("make",
-                    [](Option& o) {
-                        o.says("voxels along the longest side").from(16, 4096).initially("64").otherwiseIs("");
-                        o.in(Group::Result);
-                    })
+            .butFor(
+                "make",
+                [](Option& o) {
+                    o.says("voxels along the longest side").from(16, 4096).initially("64").otherwiseIs("");
+                    o.in(Group::Result);
+                })
             .butFor("analogy", [](Option& o) { o.says("voxels along the longest side of B"); }),
         whole("exemplar-resolution", "N", 2, 100000)
             .in(Group::Input)
@@ -48,20 +50,27 @@ std::vector<Option> inputTable() {
             .sets({"grid", "gridName"})
             .takenBy(with(kModel, {"info"}))
             .butFor("analogy", [](Option& o) { o.says("which grid of B, where it is a VDB file"); }),
-        real("iso", "VALUE").in(Group::Input).says("a fog volume is solid above this value").takenBy(with(kModel, {"info"})),
+        real("iso", "VALUE")
+            .in(Group::Input)
+            .says("a fog volume is solid above this value")
+            .takenBy(with(kModel, {"info"})),
         choice("open", "KIND", {{"close", ""}, {"shell", "of --thickness about its faces or points"}})
             .in(Group::Input)
             .says("how to treat input that is not watertight")
             .initially("close")
             .takenBy(kModel),
-        worldLength("thickness", "W").in(Group::Input).says("shell thickness, with --open shell").takenBy(kModel),
+        worldLength("thickness", "W")
+            .in(Group::Input)
+            .says("shell thickness, with --open shell")
+            .takenBy(kModel),
         real("half-width", "V", 1.5, 100)
             .in(Group::Output)
             .measuredIn(Unit::Voxels)
             .says("half-width of the narrow band of the result")
             .initially("3")
             .takenBy({"convert", "crop", "synth", "analogy", "repeat", "make"})
-            .butFor("repeat", [](Option& o) { o.initially("").otherwiseIs("that of the run that wrote the map"); }),
+            .butFor("repeat",
+                    [](Option& o) { o.initially("").otherwiseIs("that of the run that wrote the map"); }),
     };
 }
 
@@ -87,7 +96,10 @@ std::vector<Option> rasterTable() {
             .says("plane of an image; heights go along the third axis")
             .initially("xy")
             .takenBy(kModel),
-        real("threshold", "VALUE").in(Group::Raster).says("a volume (npy, tif, vti, nii ...) is solid above this value").takenBy(kModel),
+        real("threshold", "VALUE")
+            .in(Group::Raster)
+            .says("a volume (npy, tif, vti, nii ...) is solid above this value")
+            .takenBy(kModel),
         option(Kind::Labels, "labels", "LIST")
             .in(Group::Raster)
             .says("a volume is solid where it has one of these values, for example 1,4,10-20")
@@ -102,7 +114,8 @@ std::vector<Option> outputTable() {
     return {
         output("output", "FILE", {})
             .shortly('o')
-            .says("file to write, its kind by extension: .vdb, .obj, .ply, .stl, .off, .glb, .gltf; heights as .png or .exr")
+            .says("file to write, its kind by extension: .vdb, .obj, .ply, .stl, .off, .glb, .gltf; heights "
+                  "as .png or .exr")
             .repeatable()
             .takenBy({"convert", "crop", "synth", "analogy", "repeat", "make"}),
         output("output", "FILE.vdb", {"vdb"}).shortly('o').says("mask to write").takenBy({"mask"}),
@@ -111,9 +124,19 @@ std::vector<Option> outputTable() {
             .shortly('o')
             .says("write the answer as JSON to this file, and nothing to standard output")
             .takenBy(json),
-        flag("json").in(Group::Output).ofTheRun().says("print JSON instead of text").takenBy({"info", "compare"}),
-        flag("json").in(Group::Output).ofTheRun().says("print JSON (the default and only form)").takenBy({"match"}),
-        output("page", "FILE.html", {"html", "htm"}).says("also write a page with pictures, curves and verdicts").takenBy({"compare"}),
+        flag("json")
+            .in(Group::Output)
+            .ofTheRun()
+            .says("print JSON instead of text")
+            .takenBy({"info", "compare"}),
+        flag("json")
+            .in(Group::Output)
+            .ofTheRun()
+            .says("print JSON (the default and only form)")
+            .takenBy({"match"}),
+        output("page", "FILE.html", {"html", "htm"})
+            .says("also write a page with pictures, curves and verdicts")
+            .takenBy({"compare"}),
         choice("as", "KIND",
                {{"auto", "by extension; a .ply is a mesh"},
                 {"mesh", ""},
@@ -156,7 +179,8 @@ std::vector<Option> outputTable() {
             .takenBy({"synth", "analogy"}),
         choice("map-types", "TYPES",
                {{"integer", ""},
-                {"float", "maps that readers without integer vectors, such as Debian's Python module, can open"}})
+                {"float",
+                 "maps that readers without integer vectors, such as Debian's Python module, can open"}})
             .in(Group::Output)
             .says("types of the source map's grids")
             .initially("integer")
@@ -173,7 +197,8 @@ std::vector<Option> outputTable() {
 
 std::vector<Option> modelOptionTable() {
     std::vector<Option> table = outputTable();
-    for (const auto& more : {inputTable(), rasterTable()}) table.insert(table.end(), more.begin(), more.end());
+    for (const auto& more : {inputTable(), rasterTable()})
+        table.insert(table.end(), more.begin(), more.end());
     return table;
 }
 

@@ -24,9 +24,15 @@ std::vector<Option> runningOptionTable() {
             .says("progress on standard error")
             .initially("auto")
             .takenBy(every),
-        output("report", "FILE.json", {"*"}).says("write options, times and peak memory by stage, and counts").takenBy(every),
-        file("config", "FILE.json", {}).says("options from a file or an earlier report; the command line wins").takenBy(every),
-        flag("force").says("allow an output that is also an input of this run; it is replaced at the end").takenBy(every),
+        output("report", "FILE.json", {"*"})
+            .says("write options, times and peak memory by stage, and counts")
+            .takenBy(every),
+        file("config", "FILE.json", {})
+            .says("options from a file or an earlier report; the command line wins")
+            .takenBy(every),
+        flag("force")
+            .says("allow an output that is also an input of this run; it is replaced at the end")
+            .takenBy(every),
         flag("no-supervisor").says("work in this process, for debuggers").takenBy(every),
         flag("quiet").shortly('q').says("errors and warnings only").takenBy(every),
         flag("verbose").shortly('v').says("say what is done").takenBy(every),

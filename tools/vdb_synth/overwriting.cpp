@@ -38,9 +38,11 @@ bool isStream(const std::string& path) {
 }
 
 bool sameFile(const std::string& a, const std::string& b) {
-    struct stat first {}, second {};
-    return !isStream(a) && !isStream(b) && ::stat(a.c_str(), &first) == 0 && ::stat(b.c_str(), &second) == 0 &&
-           first.st_dev == second.st_dev && first.st_ino == second.st_ino && S_ISREG(first.st_mode);
+    struct stat first {
+    }, second{};
+    return !isStream(a) && !isStream(b) && ::stat(a.c_str(), &first) == 0 &&
+           ::stat(b.c_str(), &second) == 0 && first.st_dev == second.st_dev &&
+           first.st_ino == second.st_ino && S_ISREG(first.st_mode);
 }
 
 std::string named(const NamedPath& path) {
@@ -55,9 +57,9 @@ void refuseOverwriting(const Arguments& arguments, bool inputsAreOutputs) {
     for (const NamedPath& written : paths.written)
         for (const NamedPath& read : paths.read)
             if (sameFile(written.path, read.path))
-                throw Error(ErrorCode::InvalidOption,
-                            named(written) + ": is the file of the input " + named(read) +
-                                "; give another name, or --force to replace it");
+                throw Error(ErrorCode::InvalidOption, named(written) + ": is the file of the input " +
+                                                          named(read) +
+                                                          "; give another name, or --force to replace it");
 }
 
 }  // namespace vdbsynth::cli

@@ -78,8 +78,7 @@ Run::Run(const Command& command, Arguments given, const SupervisorLine& line)
     impl.verbose = arguments.has("verbose");
     context.seed = arguments.wide("seed");
     context.threads = arguments.whole("threads");
-    context.maxMemory =
-        arguments.has("max-memory") ? arguments.wide("max-memory") : presentMemory() / 10 * 8;
+    context.maxMemory = arguments.has("max-memory") ? arguments.wide("max-memory") : presentMemory() / 10 * 8;
     context.cancel = stopFlag();
     context.onProgress = [&impl](const Progress& progress) {
         if (progress.reading)
@@ -206,8 +205,8 @@ VdbMetadata Run::metadata() const {
     for (const auto& [name, hash] : mImpl->inputs) inputs.push_back({{"name", name}, {"hash", hash}});
     return {{"vdbsynth:version", kVersion},
             {"vdbsynth:command", mImpl->command.name},
-            {"vdbsynth:options",
-             Impl::normalisedOptions(arguments).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)},
+            {"vdbsynth:options", Impl::normalisedOptions(arguments).dump(
+                                     -1, ' ', false, nlohmann::json::error_handler_t::replace)},
             {"vdbsynth:seed", std::to_string(context.seed)},
             {"vdbsynth:inputs", inputs.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)}};
 }
@@ -283,8 +282,9 @@ void Run::finish() {
             {"stages", stages},
             {"counts", impl.counts},
             {"quality", impl.quality}};
-        write(arguments.text("report"),
-              withoutTemporaries(report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace)) + "\n");
+        write(
+            arguments.text("report"),
+            withoutTemporaries(report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace)) + "\n");
     }
     throwIfCancelled(context);
     mOutputs->commit();

@@ -1,7 +1,6 @@
 // Readers of option_value.h.
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/path.h"
-#include "libvdbsynth/vdb/level_set.h"
 #include "tools/vdb_synth/option_value.h"
 
 #include <algorithm>
@@ -76,7 +75,16 @@ bool readRange(const std::string& text, double& low, double& high) {
 }
 
 bool readBox(const std::string& text, IndexBox& box) {
-    return parseBox(text, box);
+    const std::vector<std::string> parts = splitAtCommas(text);
+    constexpr int kFar = 1 << 28;  // beyond this, sizes of boxes leave int
+    int ends[6] = {};
+    if (parts.size() != 6) return false;
+    for (std::size_t i = 0; i < 6; ++i)
+        if (!parseWhole(parts[i], ends[i]) || ends[i] < -kFar || ends[i] > kFar) return false;
+    const IndexBox given{{ends[0], ends[1], ends[2]}, {ends[3], ends[4], ends[5]}};
+    if (given.empty()) return false;
+    box = given;
+    return true;
 }
 
 bool readSizes(const std::string& text, std::array<SizeValue, 3>& sizes) {

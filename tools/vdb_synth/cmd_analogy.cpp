@@ -4,6 +4,7 @@
 #include "tools/vdb_synth/map_place.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/pipeline/analogy.h"
 #include "libvdbsynth/pipeline/control.h"
@@ -136,7 +137,7 @@ void reportFilter(Run& run, const FilterAnalogyStats& stats) {
     if (stats.change > 0)
         message(run.context, MessageLevel::Note,
                 "on voxels held out the filter is off by " +
-                    std::to_string(std::min(stats.affineError, stats.searchError) / stats.change) +
+                    roundedText(std::min(stats.affineError, stats.searchError) / stats.change, 3) +
                     " of what it changes (root mean squares)");
 }
 

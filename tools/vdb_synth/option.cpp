@@ -102,6 +102,7 @@ std::string rangeText(const Option& option) {
                          option.kind == Kind::WholeTriple || option.kind == Kind::Pixels;
     if (option.kind == Kind::Bytes) return "at least 1M";
     if (!numbers || (option.low <= -kUnbounded && option.high >= kUnbounded)) return "";
+    if (option.low == -kFarVoxel) return "";
     if (option.high >= kUnbounded)
         return option.low == kAboveZero ? "above 0" : "of at least " + numberText(option.low);
     return numberText(option.low) + " to " + numberText(option.high);
@@ -129,7 +130,8 @@ std::string allowedText(const Option& option) {
         case Kind::WholeTriple:
             return "three whole numbers " +
                    std::string(rangeText(option).empty() ? "" : "from " + rangeText(option) + " ") +
-                   "with commas, for example 64,64,32";
+                   "with commas, for example 64,64,32" +
+                   (option.low == -kFarVoxel ? ", within 100 million voxels of the origin" : "");
         case Kind::Range:
             return "a smaller and a larger number with a comma, for example -1,0.5";
         case Kind::Box:
@@ -173,6 +175,7 @@ std::string helpLine(const Option& option) {
     const bool marked = option.kind == Kind::Choice;
     if (!option.initial.empty() && !marked) text += "; default " + option.initial;
     if (!option.otherwise.empty()) text += "; default " + option.otherwise;
+    if (!option.note.empty()) text += "; " + option.note;
     if (option.repeats) text += "; may be given several times";
     return text;
 }

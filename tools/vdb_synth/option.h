@@ -46,6 +46,8 @@ struct Choice {
 
 /// Ends of ranges that are open: not said in help.
 inline constexpr double kAboveZero = 1e-30, kUnbounded = 1e30;
+/// The farthest voxel from the origin that an option takes.
+inline constexpr double kFarVoxel = 99999999;
 
 /// One option, described once: from this come parsing, validation, help and metadata. The table is in
 /// options.h. The functions at the end fill a description in, so that the table reads as sentences.
@@ -53,6 +55,7 @@ struct Option {
     std::string name;      ///< without dashes
     std::string argument;  ///< what --help shows for its value; empty for a flag
     std::string help;      ///< what it does; unit, range, choices and default are added (helpLine)
+    std::string note;      ///< what else there is to know, said last
     Kind kind = Kind::Flag;
     Group group = Group::Result;
     Unit unit = Unit::None;
@@ -80,6 +83,7 @@ struct Option {
     std::vector<Change> changes;
 
     Option& says(const std::string& text) { return help = text, *this; }
+    Option& noting(const std::string& text) { return note = text, *this; }
     Option& in(Group g) { return group = g, *this; }
     Option& measuredIn(Unit u) { return unit = u, *this; }
     Option& shortly(char l) { return letter = l, *this; }

@@ -25,8 +25,9 @@ std::vector<Option> resultTable() {
             .takenBy({"render"}),
         real("feature", "F", 4, 256)
             .measuredIn(Unit::Voxels)
-            .says("typical feature; a larger domain holds more of them")
+            .says("size of a typical feature")
             .otherwiseIs("the kind's own")
+            .noting("a larger domain holds more of them")
             .takenBy({"make"}),
         axisChoices("border", "KIND",
                     {{"cut", ""}, {"object", ""}, {"tile", "the result repeats without a seam"}})
@@ -90,9 +91,9 @@ std::vector<Option> synthTable() {
             .initially("0")
             .takenBy({"synth"}),
         real("longest-run", "S", 0.01, 1)
-            .says("largest share of the exemplar to copy in one piece; less gives newer results with more "
-                  "seams")
+            .says("largest share of the exemplar to copy in one piece")
             .initially("0.3")
+            .noting("less gives newer results with more seams")
             .takenBy({"synth"}),
         option(Kind::Folder, "index-cache", "FOLDER")
             .says("keep the search index of an exemplar in this folder and read it from there the next time")
@@ -141,8 +142,8 @@ std::vector<Option> controlTable() {
             .sets({"scale", "scaleMap"})
             .takenBy({"synth"}),
         option(Kind::Model, "keep", "PARTIAL")
-            .says("fill the holes of this model instead of making a larger one; without EXEMPLAR from the "
-                  "model itself")
+            .says("fill the holes of this model instead of making a larger one")
+            .noting("without EXEMPLAR from the model itself")
             .sets({"partial", "keep"})
             .takenBy({"synth"}),
         option(Kind::Hole, "hole", "MODEL")
@@ -174,8 +175,9 @@ std::vector<Option> analogyTable() {
             .takenBy({"analogy"}),
         real("scale", "S", 0.25, 4)
             .in(Group::Controls)
-            .says("size of the texture; 2 is twice as large in B's voxels")
+            .says("size of the texture")
             .initially("1")
+            .noting("2 is twice as large in B's voxels")
             .takenBy({"analogy"}),
         real("strength", "T", 0, 1)
             .in(Group::Controls)
@@ -228,7 +230,7 @@ std::vector<Option> analogyTable() {
 std::vector<Option> matchTable() {
     return {
         option(Kind::WholeTriple, "at", "I,J,K")
-            .from(-99999999, 99999999)
+            .from(-kFarVoxel, kFarVoxel)
             .in(Group::Controls)
             .measuredIn(Unit::Voxels)
             .says("minimum corner of the block in QUERY's index space")
@@ -239,8 +241,9 @@ std::vector<Option> matchTable() {
             .takenBy({"match"}),
         whole("count", "K", 1, 100000).says("number of matches").initially("1").takenBy({"match"}),
         real("tolerance", "E", 0, 100)
-            .says("accept matches whose difference is at most 1 + E times the least; 0 is exact")
+            .says("accept matches whose difference is at most 1 + E times the least")
             .initially("0")
+            .noting("0 is exact")
             .takenBy({"match"}),
         flag("check")
             .says("with --tolerance: also search exactly and print how close the matches are (slower)")
@@ -255,8 +258,9 @@ std::vector<Option> matchTable() {
                   "samples of it")
             .takenBy({"compare"}),
         whole("fresh", "N", 2, 100)
-            .says("number of fresh samples, with --process")
+            .says("number of fresh samples")
             .initially("10")
+            .noting("with --process")
             .takenBy({"compare"}),
         file("map", "FILE.vdb", {"vdb"})
             .says("source map of OTHER")

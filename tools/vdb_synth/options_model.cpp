@@ -18,35 +18,30 @@ std::vector<Option> inputTable() {
     return {
         worldLength("voxel-size", "W")
             .in(Group::Input)
-            .says("side of a voxel; a VDB is resampled")
+            .says("side of a voxel")
+            .noting("a VDB is resampled")
             .takenBy(with(kModel, {"make"}))
-            .butFor("make", [](Option& o) { o.says("side of a voxel").initially("1").in(Group::Result); })
-            .butFor("mask",
-                    [](Option& o) {
-                        o.says("side of a voxel; default 1 for box and ball; with inside a VDB is resampled");
-                    })
-            .butFor("analogy", [](Option& o) { o.says("side of a voxel of B; a VDB is resampled"); }),
+            .butFor("make", [](Option& o) { o.initially("1").noting("").in(Group::Result); })
+            .butFor("mask", [](Option& o) { o.otherwiseIs("1 for box and ball"); })
+            .butFor("analogy", [](Option& o) { o.says("side of a voxel of B"); }),
         whole("resolution", "N", 2, 100000)
             .in(Group::Input)
             .says("voxels along the longest side")
             .otherwiseIs("128 for meshes and points, an image's pixels, a volume's cells")
             .takenBy(with(kModel, {"make"}))
-            .butFor(
-                "make",
-                [](Option& o) {
-                    o.says("voxels along the longest side").from(16, 4096).initially("64").otherwiseIs("");
-                    o.in(Group::Result);
-                })
+            .butFor("make",
+                    [](Option& o) { o.from(16, 4096).initially("64").otherwiseIs("").in(Group::Result); })
             .butFor("analogy", [](Option& o) { o.says("voxels along the longest side of B"); }),
         whole("exemplar-resolution", "N", 2, 100000)
             .in(Group::Input)
-            .says("voxels along the longest side of a mesh A; A2 has A's voxels")
+            .says("voxels along the longest side of a mesh A")
             .otherwiseIs("128")
+            .noting("A2 has A's voxels")
             .takenBy({"analogy"}),
         option(Kind::Text, "grid", "NAME")
             .in(Group::Input)
             .says("which grid of a VDB file")
-            .otherwiseIs("`surface`, or the only one that can be a model")
+            .otherwiseIs("surface, else the first level set, else with --iso a fog volume")
             .sets({"grid", "gridName"})
             .takenBy(with(kModel, {"info"}))
             .butFor("analogy", [](Option& o) { o.says("which grid of B, where it is a VDB file"); }),
@@ -61,7 +56,9 @@ std::vector<Option> inputTable() {
             .takenBy(kModel),
         worldLength("thickness", "W")
             .in(Group::Input)
-            .says("shell thickness, with --open shell")
+            .says("shell thickness")
+            .noting("with --open shell")
+
             .takenBy(kModel),
         real("half-width", "V", 1.5, 100)
             .in(Group::Output)
@@ -84,7 +81,7 @@ std::vector<Option> rasterTable() {
         worldLength("height", "H")
             .in(Group::Raster)
             .says("height of white above black, or of the highest value above the lowest")
-            .otherwiseIs("a tenth of the longer side; real values as they are")
+            .otherwiseIs("a tenth of the longer side, real values as they are")
             .takenBy(kModel),
         worldLength("base", "B")
             .in(Group::Raster)
@@ -93,8 +90,9 @@ std::vector<Option> rasterTable() {
             .takenBy(kModel),
         choice("plane", "PLANE", {{"xy", ""}, {"yz", ""}, {"zx", ""}})
             .in(Group::Raster)
-            .says("plane of an image; heights go along the third axis")
+            .says("plane of an image")
             .initially("xy")
+            .noting("heights go along the third axis")
             .takenBy(kModel),
         real("threshold", "VALUE")
             .in(Group::Raster)
@@ -146,14 +144,16 @@ std::vector<Option> outputTable() {
                 {"volume", "what an image is read as"}})
             .in(Group::Output)
             .orAnExtension()
-            .says("what to write; of standard input also the extension of its kind, for example obj")
+            .says("what to write")
+            .noting("for standard input also the extension of its kind, such as obj")
             .initially("auto")
             .sets({"as", "imageAsVolume", "points"})
             .takenBy({"convert"}),
         real("adaptivity", "A", 0, 1)
             .in(Group::Output)
-            .says("merge flat parts of a mesh output; 0 keeps all faces")
+            .says("merge flat parts of a mesh output")
             .initially("0")
+            .noting("0 keeps all faces")
             .takenBy({"convert", "synth", "analogy", "repeat"}),
         flag("sharp")
             .in(Group::Output)
@@ -175,7 +175,8 @@ std::vector<Option> outputTable() {
             .says("transfer weighted means of numbers and vectors instead of copies")
             .sets({"carried", "carryBlend"})
             .takenBy({"synth", "repeat"}),
-        map.says("also write the source map, what was copied from where; without FILE into the .vdb output")
+        map.says("also write the source map, what was copied from where")
+            .noting("without FILE into the .vdb output")
             .takenBy({"synth", "analogy"}),
         choice("map-types", "TYPES",
                {{"integer", ""},

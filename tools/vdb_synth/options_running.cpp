@@ -9,15 +9,17 @@ std::vector<Option> runningOptionTable() {
                                          "analogy", "repeat", "compare", "render", "make"};
     std::vector<Option> table{
         option(Kind::Seed, "seed", "N")
-            .says("seed of everything random; the same seed gives the same bytes")
+            .says("seed of everything random")
             .initially("0")
+            .noting("the same seed gives the same bytes")
             .takenBy({"convert", "synth", "analogy", "make", "compare"}),
         whole("threads", "N", 0, 1024)
-            .says("number of threads; results do not depend on it")
-            .otherwiseIs("one for each core, as 0")
+            .says("number of threads")
+            .initially("0")
+            .noting("0 is one for each core; results do not depend on it")
             .takenBy(every),
         option(Kind::Bytes, "max-memory", "BYTES")
-            .says("most memory to use, for example 4G")
+            .says("most memory to use, such as 4G")
             .otherwiseIs("80 % of the machine's")
             .takenBy(every),
         choice("progress", "STYLE", {{"auto", "a bar on a terminal"}, {"bar", ""}, {"json", ""}, {"off", ""}})

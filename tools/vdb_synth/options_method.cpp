@@ -46,6 +46,7 @@ std::vector<Option> resultTable() {
             .takenBy({"mask"}),
         worldLength("radius", "R").says("for ball: its radius").takenBy({"mask"}),
         option(Kind::Range, "range", "LOW,HIGH")
+            .sets({"range", "minimum", "maximum"})
             .says("for range: active voxels of --grid with a value from LOW to HIGH")
             .takenBy({"mask"}),
         option(Kind::Triple, "view", "X,Y,Z")
@@ -53,6 +54,7 @@ std::vector<Option> resultTable() {
             .initially("1,-1.6,0.9")
             .takenBy({"render"}),
         option(Kind::Slice, "slice", "z=0.5")
+            .sets({"slice", "axis", "fraction"})
             .says("draw a slice across an axis, at a fraction of the domain, instead of a shaded picture")
             .takenBy({"render"}),
         whole("samples", "N", 1, 64).says("rays per pixel at edges").initially("4").takenBy({"render"}),

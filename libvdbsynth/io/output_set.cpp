@@ -3,6 +3,7 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -162,6 +163,11 @@ std::string OutputSet::withoutTemporaries(std::string text) const {
 }
 
 void OutputSet::commit() {
+    // What was reserved and never written would replace a good file by an empty one.
+    const auto unwritten = std::stable_partition(mEntries.begin(), mEntries.end(),
+                                                 [](const Entry& entry) { return entry.taken; });
+    for (auto entry = unwritten; entry != mEntries.end(); ++entry) ::unlink(entry->temporary.c_str());
+    mEntries.erase(unwritten, mEntries.end());
     for (const Entry& entry : mEntries) syncToDisk(entry.temporary, entry.path);
     while (!mEntries.empty()) {
         const Entry entry = mEntries.front();

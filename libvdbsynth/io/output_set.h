@@ -28,7 +28,8 @@ public:
     void reserve(const std::string& path);
     /// A message with the outputs' names where it has those of their temporaries.
     std::string withoutTemporaries(std::string text) const;
-    /// Syncs all temporaries to disk, then renames them in the order they were added.
+    /// Syncs all temporaries to disk, then renames them in the order they were added. A path that was
+    /// reserved and never asked for with `add` keeps the file it has: nobody wrote another.
     /// @throw Error Io; nothing was renamed unless a rename itself failed
     void commit();
 

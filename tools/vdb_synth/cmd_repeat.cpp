@@ -54,13 +54,12 @@ std::vector<LevelSet> loadInputs(Run& run, const SourceMap& map) {
 void repeat(Run& run) {
     run.requireInputs(2, 66);
     const std::vector<std::string> paths = run.outputPaths();
-    requireOutputPaths(paths);
     const std::string mapPath = run.arguments.inputs[0];
     if (extensionOf(mapPath) != "vdb")
         throw Error(ErrorCode::InvalidOption, mapPath + ": a source map is a .vdb file");
     for (std::size_t i = 1; i < run.arguments.inputs.size(); ++i) requireModelPath(run.arguments.inputs[i]);
     ModelOutputOptions outputs;
-    outputs.adaptivity = run.arguments.real("adaptivity", 0, 0, 1);
+    outputs.adaptivity = run.arguments.real("adaptivity");
     RepeatOptions options;
     options.carried = carriedValues(run.arguments);
     if (run.arguments.has("half-width")) options.halfWidth = float(run.modelOptions().halfWidth);
@@ -85,12 +84,8 @@ void repeat(Run& run) {
 
 const Command kRepeat{"repeat",
                       "repeat MAP EXEMPLAR... -o OUT [options] | repeat MAP A2... B -o OUT (an analogy's "
-                      "map) | repeat MAP [EXEMPLAR] KEPT -o OUT (of synth --keep)",
-                      "Apply a saved source map again",
-                      "vdb_synth repeat map.vdb grid.vdb -o again.vdb",
-                      {carryOptions()[0],
-                       carryOptions()[1],
-                       {"adaptivity", "A", "0 to 1: merge flat parts of a mesh output, default 0"}},
+                      "map) | repeat MAP [EXEMPLAR] KEPT -o OUT (a map of synth --keep)",
+                      "Apply a saved source map again", "vdb_synth repeat map.vdb grid.vdb -o again.vdb",
                       repeat};
 
 }  // namespace vdbsynth::cli

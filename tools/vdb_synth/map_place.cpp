@@ -8,16 +8,6 @@
 
 namespace vdbsynth::cli {
 
-Option mapOption() {
-    return {"source-map",
-            "[FILE.vdb]",
-            "also write the source map, what was copied from where (of synth for repeat); without "
-            "FILE into the .vdb output",
-            false,
-            0,
-            ".vdb"};
-}
-
 bool anyVdb(const std::vector<std::string>& paths) {
     return std::any_of(paths.begin(), paths.end(),
                        [](const std::string& path) { return extensionOf(path) == "vdb"; });
@@ -27,7 +17,6 @@ MapPlace mapPlaceOf(const Arguments& arguments, const std::vector<std::string>& 
     MapPlace place{arguments.text("source-map"), false};
     place.inside = place.path == kNoValue;
     if (place.path.empty()) return place;
-    requireOption(place.inside || extensionOf(place.path) == "vdb", "source-map", place.path, "a .vdb file");
     if (place.inside && !anyVdb(outputs))
         throw Error(ErrorCode::InvalidOption,
                     "--source-map: without a file it goes into a .vdb output, and there is none; give "

@@ -9,14 +9,12 @@
 namespace vdbsynth::cli {
 
 /// --source-map: where the source map goes.
-Option mapOption();
-
 struct MapPlace {
     std::string path;     ///< empty: nowhere
     bool inside = false;  ///< into the .vdb output
 };
 
-/// @throw Error InvalidOption (not a .vdb, or no output to write it into)
+/// @throw Error InvalidOption (no output to write it into)
 MapPlace mapPlaceOf(const Arguments& arguments, const std::vector<std::string>& outputs);
 
 bool anyVdb(const std::vector<std::string>& paths);

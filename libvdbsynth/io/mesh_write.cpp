@@ -1,5 +1,6 @@
 // The writers behind writeMesh and writePointsPly, but glTF's.
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/mesh_readers.h"
 #include "libvdbsynth/io/text_scanner.h"
@@ -28,7 +29,7 @@ std::uint8_t byteOf(float value) {
 void appendPoint(std::string& text, const Vec3f& p) {
     for (int axis = 0; axis < 3; ++axis) {
         if (axis) text += ' ';
-        appendReal(text, p[axis]);
+        text += exactText(p[axis]);
     }
 }
 
@@ -50,7 +51,7 @@ std::string objText(const Mesh& mesh) {
         appendPoint(text, mesh.points[i]);
         for (std::size_t c = 0; colour && c < 3; ++c) {
             text += ' ';
-            appendReal(text, colour->values[3 * i + c]);
+            text += exactText(colour->values[3 * i + c]);
         }
         text += '\n';
     }

@@ -27,14 +27,14 @@ void readVertexLines(const std::string& path, const std::string& content, Mesh& 
             for (int axis = 0; axis < 3; ++axis) {
                 const std::string_view number = scanner.wordOnLine();
                 if (number.empty()) scanner.fail("a vertex has fewer than three coordinates");
-                if (!parseReal(number, p[axis]))
+                if (!parseAnyReal(number, p[axis]))
                     scanner.fail("\"" + std::string(number.substr(0, 40)) + "\" is not a number");
                 if (!std::isfinite(p[axis])) scanner.fail("a coordinate is not a finite number");
             }
             mesh.points.push_back(p);
             for (AttributeColumn& column : colour) {
                 float value = 0;
-                if (parseReal(scanner.wordOnLine(), value)) column.values.push_back(value);
+                if (parseAnyReal(scanner.wordOnLine(), value)) column.values.push_back(value);
             }
         }
         scanner.skipLine();

@@ -10,7 +10,7 @@ namespace {
 void readColour(TextScanner& scanner, AttributeColumn& column) {
     const std::string_view word = scanner.wordOnLine();
     float value = 0;
-    if (!parseReal(word, value)) return;
+    if (!parseAnyReal(word, value)) return;
     if (word.find('.') != std::string_view::npos) column.white = 1;
     column.values.push_back(value);
 }

@@ -246,7 +246,7 @@ void readAscii(const std::string& path, const std::string& content, const Header
                 float value = 0;
                 std::int64_t whole = 0;
                 const bool isWhole = header.fields[f].type != 'F' && parseWhole(word, whole);
-                if (!isWhole && !parseReal(word, value))
+                if (!isWhole && !parseAnyReal(word, value))
                     scanner.fail("\"" + std::string(word.substr(0, 40)) + "\" is not a number");
                 const bool colour = row.colour > 0 && std::size_t(slotOf[f]) == row.colour;
                 numbers[std::size_t(slotOf[f])] = isWhole  ? double(whole)

@@ -189,7 +189,7 @@ private:
         const std::string_view word = mScanner.word();
         float value = 0;
         if (word.empty()) fail("the file is truncated");
-        if (!parseReal(word, value)) fail("\"" + std::string(word.substr(0, 40)) + "\" is not a number");
+        if (!parseAnyReal(word, value)) fail("\"" + std::string(word.substr(0, 40)) + "\" is not a number");
         return double(value);
     }
 

@@ -15,7 +15,7 @@ void readLine(TextScanner& scanner, std::vector<float>& numbers) {
     scanner.atEnd();  // to the next line that has something
     for (std::string_view word = scanner.wordOnLine(); !word.empty(); word = scanner.wordOnLine()) {
         float value = 0;
-        if (!parseReal(word, value))
+        if (!parseAnyReal(word, value))
             scanner.fail("\"" + std::string(word.substr(0, 40)) + "\" is not a number");
         numbers.push_back(value);
     }

@@ -3,7 +3,6 @@
 #include "libvdbsynth/base/error.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 namespace vdbsynth {
@@ -60,7 +59,7 @@ float TextScanner::real() {
     const std::string_view text = word();
     float value = 0;
     if (text.empty()) fail("the file ends where a number should be; it is truncated");
-    if (!parseReal(text, value)) fail("\"" + std::string(text.substr(0, 40)) + "\" is not a number");
+    if (!parseAnyReal(text, value)) fail("\"" + std::string(text.substr(0, 40)) + "\" is not a number");
     if (!std::isfinite(value)) fail("a coordinate is not a finite number");
     return value;
 }
@@ -81,32 +80,6 @@ std::size_t TextScanner::line() const {
 
 void TextScanner::fail(const std::string& what) const {
     throw Error(ErrorCode::BadData, mPath + ":" + std::to_string(line()) + ": " + what);
-}
-
-bool parseReal(std::string_view word, float& value) {
-    if (!word.empty() && word.front() == '+') word.remove_prefix(1);
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error == std::errc::result_out_of_range) {
-        // Too small for a float is zero; too large stays an error of the caller (not finite).
-        double wide = 0;
-        const auto [wideEnd, wideError] = std::from_chars(word.data(), word.data() + word.size(), wide);
-        value = wideError == std::errc() && std::abs(wide) < 1 ? 0.f : HUGE_VALF;
-        return wideEnd == word.data() + word.size();
-    }
-    return error == std::errc() && end == word.data() + word.size();
-}
-
-bool parseWhole(std::string_view word, std::int64_t& value) {
-    if (!word.empty() && word.front() == '+') word.remove_prefix(1);
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    return error == std::errc() && end == word.data() + word.size();
-}
-
-void appendReal(std::string& text, float value) {
-    char buffer[32];
-    const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value);
-    (void)error;  // 32 characters hold every float
-    text.append(buffer, std::size_t(end - buffer));
 }
 
 }  // namespace vdbsynth

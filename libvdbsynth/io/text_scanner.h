@@ -1,4 +1,6 @@
 #pragma once
+#include "libvdbsynth/base/number_text.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -37,12 +39,5 @@ private:
     std::size_t mAt = 0;
     char mComment;
 };
-
-/// Parses a whole word as a number. @return false if it is not one.
-bool parseReal(std::string_view word, float& value);
-bool parseWhole(std::string_view word, std::int64_t& value);
-
-/// Appends the shortest decimal that reads back to the same float.
-void appendReal(std::string& text, float value);
 
 }  // namespace vdbsynth

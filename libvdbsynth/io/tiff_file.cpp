@@ -240,7 +240,7 @@ void dropNoData(TIFF* file, Raster& raster) {
     std::string word(text, strnlen(text, count));
     while (!word.empty() && word.back() == ' ') word.pop_back();
     float value = 0;
-    if (!parseReal(word, value)) return;
+    if (!parseAnyReal(word, value)) return;
     for (float& sample : raster.values)
         if (sample == value) sample = std::nanf("");
 }

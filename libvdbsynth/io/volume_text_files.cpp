@@ -86,7 +86,7 @@ Raster readInr(const std::string& path, const std::string& content, const RunCon
     const char* names[3] = {"VX", "VY", "VZ"};
     for (int axis = 0; axis < 3; ++axis) {
         float spacing = 0;
-        if (!fields.count(names[axis]) || !parseReal(fields[names[axis]], spacing)) continue;
+        if (!fields.count(names[axis]) || !parseAnyReal(fields[names[axis]], spacing)) continue;
         raster.spacing[axis] = double(spacing);
         raster.knownSpacing = true;
     }

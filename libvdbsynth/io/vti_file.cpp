@@ -167,7 +167,7 @@ std::vector<double> numbersOf(const char* text) {
     while ((at = rest.find_first_not_of(" \t\n\r", at)) != std::string::npos) {
         const std::size_t end = std::min(rest.find_first_of(" \t\n\r", at), rest.size());
         float value = 0;
-        if (!parseReal(std::string_view(rest).substr(at, end - at), value)) return {};
+        if (!parseAnyReal(std::string_view(rest).substr(at, end - at), value)) return {};
         numbers.push_back(double(value));
         at = end;
     }

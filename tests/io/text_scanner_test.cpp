@@ -3,10 +3,6 @@
 
 #include <catch2/catch.hpp>
 
-#include <cmath>
-#include <cstring>
-#include <limits>
-
 #include "tests/support/makers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -37,26 +33,15 @@ TEST_CASE("TextScanner: zero bytes neither end it nor hang it", "[io][degenerate
     CHECK(words == 3);
 }
 
-TEST_CASE("parseReal: finite numbers, tiny ones become zero, words are refused", "[io][fast]") {
-    float value = 7;
-    CHECK((parseReal("+1.5", value) && value == 1.5f));
-    CHECK((parseReal("1e-60", value) && value == 0.f));
-    CHECK((parseReal("1e60", value) && std::isinf(value)));
-    CHECK_FALSE(parseReal("1.5x", value));
-    CHECK_FALSE(parseReal("", value));
-}
-
-TEST_CASE("appendReal: every float reads back to the same bits", "[io][property]") {
-    for (int i = 0; i < 5000; ++i) {
-        const std::uint32_t bits = Random(3, std::uint64_t(i)).bits();
-        float value, back;
-        std::memcpy(&value, &bits, 4);
-        if (!std::isfinite(value)) continue;
-        std::string text;
-        appendReal(text, value);
-        REQUIRE(parseReal(text, back));
-        if (std::abs(value) >= std::numeric_limits<float>::min()) REQUIRE(back == value);
-    }
+TEST_CASE("TextScanner: tiny numbers become zero, what is not finite or no number is named", "[io][error]") {
+    const std::string path = "f", text = "1e-60 1e60 nan 1.5x 3000000000000000000000 7.5";
+    TextScanner scanner(path, text);
+    CHECK(scanner.real() == 0);
+    CHECK(test::contains(test::thrownBy([&] { scanner.real(); }).message, "not a finite number"));
+    CHECK(test::contains(test::thrownBy([&] { scanner.real(); }).message, "not a finite number"));
+    CHECK(test::contains(test::thrownBy([&] { scanner.real(); }).message, "\"1.5x\" is not a number"));
+    CHECK(test::contains(test::thrownBy([&] { scanner.whole(); }).message, "is not a whole number"));
+    CHECK(test::contains(test::thrownBy([&] { scanner.whole(); }).message, "\"7.5\" is not a whole number"));
 }
 
 TEST_CASE("readWholeFile: a missing file and a directory are named", "[io][error]") {

@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/hash.h"
+#include "libvdbsynth/base/machine_memory.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/text_scanner.h"
 #include "tools/vdb_synth/stop_flag.h"
@@ -28,16 +29,6 @@ ProgressStyle progressStyle(const Arguments& arguments) {
     if (style == "json") return ProgressStyle::Json;
     return style == "auto" && ::isatty(2) && !arguments.has("quiet") ? ProgressStyle::Bar
                                                                      : ProgressStyle::Off;
-}
-
-// The machine's memory, or what its control group leaves of it, as in a container or under a job scheduler.
-std::uint64_t presentMemory() {
-    std::uint64_t bytes = std::uint64_t(::sysconf(_SC_PHYS_PAGES)) * std::uint64_t(::sysconf(_SC_PAGE_SIZE));
-    for (const char* path : {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
-        std::uint64_t limit = 0;
-        if (std::ifstream(path) >> limit && limit > 0) bytes = std::min(bytes, limit);
-    }
-    return bytes;
 }
 
 // Options that change how a run goes, not what it makes.

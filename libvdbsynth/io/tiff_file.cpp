@@ -1,3 +1,4 @@
+#include "libvdbsynth/base/checked_product.h"
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/raster_readers.h"
 #include "libvdbsynth/io/text_scanner.h"
@@ -176,12 +177,14 @@ private:
             height = std::min(height, layout.height);
         }
         const tmsize_t most = tiled ? TIFFTileSize(mFile) : TIFFStripSize(mFile);
-        if (width == 0 || height == 0 || width > 1 << 24 || most <= 0) fail();
+        if (width == 0 || height == 0 || width > 1 << 24 || height > 1 << 24 || most <= 0) fail();
         requireMemory(mContext, double(most), mPath + ": a strip", "store it in smaller ones");
         std::vector<char> bytes(static_cast<std::size_t>(most));
         const std::uint32_t across = (layout.width + width - 1) / width,
                             down = (layout.height + height - 1) / height;
         const std::uint32_t planes = layout.planar == PLANARCONFIG_SEPARATE ? layout.samples : 1;
+        // libtiff counts pieces in 32 bits.
+        if (!productFits({across, down, planes}, 0xffffffffu)) fail();
         for (std::uint32_t plane = 0; plane < planes; ++plane)
             for (std::uint32_t i = 0; i < across * down; ++i) {
                 const std::uint32_t number = plane * across * down + i;

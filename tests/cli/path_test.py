@@ -1,7 +1,11 @@
 """The main path, end to end, and what every output promises."""
 import json
+import os
+import signal
 import subprocess
+import time
 import unittest
+
 
 from support import PROGRAM, SOURCE, CliTest, sample
 
@@ -143,6 +147,48 @@ class StandardStreams(CliTest):
         self.piped(self.read("g.obj"), "convert", "-.obj", "-o", "c.vdb", "--report", "c.json")
         self.assertEqual(json.loads(self.read("c.json"))["options"]["inputs"], ["-.obj"])
         self.assertEqual(self.piped(self.read("g.obj"), "convert", "--config", "c.json").returncode, 0)
+
+    def test_temporaries_are_private(self):
+        """Others write to the folder of temporaries too: no name is known before, and nobody else can look."""
+        shared = self.path("shared")
+        os.mkdir(shared)
+        self.write("precious", "precious")
+        self.ok("make", "grid", "g.vdb", "--resolution", 24)
+        self.ok("convert", "g.vdb", "-o", "g.obj")
+        # Links where the names of old were, for every process number that the worker may get.
+        script = 'for i in $(seq $$ $(($$ + 60))); do for e in in.obj out.ply; do ln -s "$0" "$TMPDIR/vdb_synth.$i.$e"; done; done; exec "$@"'
+        process = subprocess.Popen(["sh", "-c", script, self.path("precious"), PROGRAM, "convert", "-.obj", "-o", "-.ply"], cwd=self.folder,
+                                   stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={**os.environ, "TMPDIR": shared})
+        process.stdin.write(self.read("g.obj")[:100])
+        process.stdin.flush()
+        made, deadline = [], time.time() + 30
+        while not made and time.time() < deadline:
+            made = [os.path.join(at, name) for at, _, names in os.walk(shared) for name in names if not name.endswith((".in.obj", ".out.ply"))]
+            time.sleep(0.05)
+        self.assertTrue(made)
+        for path in made:
+            self.assertEqual(os.stat(path).st_mode & 0o777, 0o600)
+            self.assertEqual(os.stat(os.path.dirname(path)).st_mode & 0o777, 0o700)
+        words = process.communicate(self.read("g.obj")[100:], timeout=60)
+        self.assertEqual(process.returncode, 0, words[1])
+        self.assertTrue(words[0].startswith(b"ply"))
+        self.assertEqual(self.read("precious"), b"precious")
+        self.assertFalse([name for name in os.listdir(shared) if not os.path.islink(os.path.join(shared, name))])
+
+    def test_a_killed_worker_leaves_no_temporaries(self):
+        shared = self.path("shared")
+        os.mkdir(shared)
+        process = subprocess.Popen([PROGRAM, "convert", "-.obj", "-o", "a.vdb"], cwd=self.folder, stdin=subprocess.PIPE,
+                                   stderr=subprocess.DEVNULL, env={**os.environ, "TMPDIR": shared})
+        deadline = time.time() + 30
+        while not any(names for _, _, names in os.walk(shared)) and time.time() < deadline:
+            time.sleep(0.05)
+        self.assertTrue(os.listdir(shared))
+        worker = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True).stdout.split()
+        os.kill(int(worker[0]), signal.SIGKILL)
+        process.wait(timeout=60)
+        process.stdin.close()
+        self.assertEqual(os.listdir(shared), [])
 
     def test_errors(self):
         for content, words, code, says in (

@@ -77,7 +77,9 @@ double secondsAllowed(const std::string& path) {
 }
 
 void removeTemporaries(const Child& child) {
-    for (const std::string& path : child.temporaries) ::unlink(path.c_str());
+    // Backwards, so that a folder comes after what lies in it.
+    for (auto path = child.temporaries.rbegin(); path != child.temporaries.rend(); ++path)
+        std::remove(path->c_str());
 }
 
 int reportDeath(const Child& child, int signal, bool hung) {

@@ -2,6 +2,7 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/raster_readers.h"
 #include "libvdbsynth/io/text_scanner.h"
+#include "libvdbsynth/math/trigonometry.h"
 
 #include <tiffio.h>
 
@@ -264,7 +265,7 @@ void readGeography(TIFF* file, Raster& raster) {
     const double* tie = static_cast<const double*>(valuesOf(file, kTiePoint, TIFF_DOUBLE, count));
     if (tie && count >= 6) latitude = tie[4] - (raster.size.y / 2.0 - tie[1]) * scale[1];
     constexpr double kMetresPerDegree = 111320, kRadians = 3.14159265358979323846 / 180;
-    const double narrowing = std::abs(latitude) < 89 ? std::cos(latitude * kRadians) : 1;
+    const double narrowing = std::abs(latitude) < 89 ? cosine(latitude * kRadians) : 1;
     raster.spacing = {scale[0] * kMetresPerDegree * narrowing, scale[1] * kMetresPerDegree, 1};
     raster.unit = "m";
 }

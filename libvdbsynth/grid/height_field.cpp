@@ -1,11 +1,11 @@
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/grid/crossing_field.h"
 #include "libvdbsynth/grid/raster_field.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace vdbsynth {
 namespace {
@@ -105,9 +105,7 @@ std::vector<float> edgeDistances(const HeightMap& map) {
 }
 
 std::string rounded(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
-    return text;
+    return roundedText(value, 6);
 }
 
 // Sizes [world] that an image's slab has.

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <locale>
 #include <map>
 #include <set>
 #include <sstream>
@@ -502,6 +503,7 @@ std::string gltfBytes(const Mesh& mesh, bool binary) {
     model.scenes.push_back(scene);
     model.defaultScene = 0;
     std::ostringstream stream;
+    stream.imbue(std::locale::classic());
     tinygltf::TinyGLTF writer;
     if (!writer.WriteGltfSceneToStream(&model, stream, /* prettyPrint= */ false, binary))
         throw Error(ErrorCode::Solver, "the glTF file cannot be composed");

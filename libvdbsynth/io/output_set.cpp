@@ -1,6 +1,7 @@
 #include "libvdbsynth/io/output_set.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/path.h"
 
 #include <cerrno>
@@ -43,10 +44,9 @@ void removeStale(const std::string& folder, const std::string& name) {
             found.compare(found.size() - 4, 4, ".tmp") != 0)
             continue;
         const std::string digits = found.substr(prefix.size(), found.size() - prefix.size() - 4);
-        if (digits.empty() || digits.size() > 9 ||
-            digits.find_first_not_of("0123456789") != std::string::npos)
+        pid_t process = 0;
+        if (digits.find_first_not_of("0123456789") != std::string::npos || !parseWhole(digits, process))
             continue;
-        const pid_t process = pid_t(std::stol(digits));
         if (!stillRuns(process)) std::filesystem::remove(entry.path(), ignored);
     }
 }

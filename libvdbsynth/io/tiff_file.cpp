@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdarg>
-#include <cstdlib>
 #include <memory>
 
 namespace vdbsynth {
@@ -277,7 +276,10 @@ void refuseContiguousStack(TIFF* file, const std::string& path) {
     const std::string words = text;
     const std::size_t images = words.find("images=");
     if (words.compare(0, 7, "ImageJ=") != 0 || images == std::string::npos) return;
-    const bool several = std::atoi(words.c_str() + images + 7) > 1 && TIFFNumberOfDirectories(file) == 1;
+    const std::size_t number = images + 7, end = words.find_first_not_of("0123456789", number);
+    int count = 0;
+    const bool several = parseWhole(words.substr(number, end - number), count) && count > 1 &&
+                         TIFFNumberOfDirectories(file) == 1;
     if (several)
         throw Error(
             ErrorCode::BadData,

@@ -1,6 +1,7 @@
 #include "libvdbsynth/procedural/analogy_pair.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/random.h"
 #include "libvdbsynth/math/trigonometry.h"
 #include "libvdbsynth/procedural/packing.h"
@@ -207,7 +208,7 @@ AnalogyPairFields makeAnalogyPair(const ExemplarOptions& options, const RunConte
     if (kind == kinds.end())
         throw Error(ErrorCode::InvalidOption, "make " + options.kind + ": no pair has that name");
     const double feature = options.feature > 0 ? options.feature : kind->feature;
-    requireOption(feature >= 6 && feature <= 256, "feature", std::to_string(feature), "from 6 to 256 voxels");
+    requireOption(feature >= 6 && feature <= 256, "feature", exactText(feature), "from 6 to 256 voxels");
     requireOption(
         options.resolution >= 4 * feature && options.resolution <= 4096, "resolution",
         std::to_string(options.resolution),

@@ -1,6 +1,7 @@
 #include "libvdbsynth/procedural/exemplar.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/procedural/kinds.h"
 
 #include <algorithm>
@@ -45,7 +46,7 @@ const std::vector<ExemplarKind>& exemplarKinds() {
 ExemplarField makeExemplar(const ExemplarOptions& options, const RunContext& ctx) {
     const ExemplarKind& kind = findKind(options.kind);
     const double feature = options.feature > 0 ? options.feature : kind.feature;
-    requireOption(feature >= 4 && feature <= 256, "feature", std::to_string(feature), "from 4 to 256 voxels");
+    requireOption(feature >= 4 && feature <= 256, "feature", exactText(feature), "from 4 to 256 voxels");
     requireOption(options.resolution >= 16 && options.resolution <= 4096, "resolution",
                   std::to_string(options.resolution), "from 16 to 4096");
     Index3 size = options.size;

@@ -1,6 +1,7 @@
 """The main path, end to end, and what every output promises."""
 import json
 import os
+import shutil
 import signal
 import subprocess
 import time
@@ -336,11 +337,44 @@ class Determinism(CliTest):
         self.assertNotEqual(first, self.read("b.vdb"))
 
     def test_metadata_tells_what_made_it(self):
-        self.ok("make", "grid", "g.vdb", "--resolution", 24, "--seed", 3)
-        raw = self.read("g.vdb")
-        for text in (b"vdbsynth:version", b"vdbsynth:options", b"vdbsynth:seed", b"vdbsynth:inputs"):
-            self.assertIn(text, raw)
-        self.assertNotIn(self.folder.encode(), raw)
+        """Every command that writes a VDB, with its inputs in one folder and in another: the same bytes."""
+        self.ok("make", "grid", "g.vdb", "--resolution", 40)
+        self.ok("make", "grooves", "plain.vdb", "textured.vdb", "--resolution", 48)
+        self.ok("mask", "box", "-o", "m.vdb", "--box", "8,0,0,39,39,39")
+        self.ok("synth", "g.vdb", "-o", "map.vdb", "--source-map", "--size", "2x,1x,1x")
+        commands = [
+            (["make", "grid", "OUT", "--resolution", 24, "--seed", 3], []),
+            (["convert", "g.vdb", "-o", "OUT", "--half-width", 4], ["g.vdb"]),
+            (["crop", "g.vdb", "-o", "OUT", "--box", "4,4,4,30,30,30"], ["g.vdb"]),
+            (["mask", "box", "-o", "OUT", "--box", "1,2,3,4,5,6"], []),
+            (["synth", "g.vdb", "-o", "OUT", "--size", "2x,1x,1x", "--exemplar-mask", "m.vdb"], ["g.vdb", "m.vdb"]),
+            (["repeat", "map.vdb", "g.vdb", "-o", "OUT"], ["map.vdb", "g.vdb"]),
+            (["analogy", "plain.vdb", "textured.vdb", "plain.vdb", "-o", "OUT", "--levels", 1], ["plain.vdb", "textured.vdb", "plain.vdb"]),
+        ]
+        for words, inputs in commands:
+            with self.subTest(command=words[0]):
+                written = []
+                for place in ("here", "there/deep"):
+                    os.makedirs(self.path(place), exist_ok=True)
+                    for name in inputs:
+                        shutil.copy(self.path(name), self.path(f"{place}/{name}"))
+                    moved = [f"{place}/out.vdb" if w == "OUT" else self.path(f"{place}/{w}") if w in inputs else w for w in words]
+                    self.ok(*moved)
+                    written.append(self.read(f"{place}/out.vdb"))
+                self.assertEqual(written[0], written[1])
+                self.assertNotIn(self.folder.encode(), written[0])
+                self.assertNotIn(b"here/", written[0])
+                metadata = json.loads(self.ok("info", "here/out.vdb", "--json").stdout)["metadata"]
+                self.assertEqual(metadata["vdbsynth:command"], words[0])
+                self.assertEqual(metadata["vdbsynth:seed"], "3" if words[0] == "make" else "0")
+                self.assertTrue(metadata["vdbsynth:version"])
+                options = json.loads(metadata["vdbsynth:options"])
+                for option in [w for w in words if str(w).startswith("--") and w not in ("--seed", "--exemplar-mask")]:
+                    self.assertIn(option[2:], options)
+                told = json.loads(metadata["vdbsynth:inputs"])
+                self.assertEqual(sorted({i["name"] for i in told}), sorted(set(inputs)))
+                for item in told:
+                    self.assertRegex(item["hash"], "^[0-9a-f]{32}$")
 
 
 class Words(CliTest):

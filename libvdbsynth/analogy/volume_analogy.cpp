@@ -397,7 +397,7 @@ void validate(const VolumeAnalogyOptions& options) {
                       "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
     };
     whole(options.levels, 0, 6, "levels");
-    whole(options.sweeps, 0, 10, "sweeps");
+    whole(options.sweeps, 1, 10, "sweeps");
     whole(options.half, 1, 4, "half");
     whole(options.coarseHalf, 1, 3, "coarseHalf");
     whole(options.components, 4, 256, "components");

@@ -28,7 +28,7 @@ inline constexpr const char* kDomainKey =
     "vdbsynth:domain";  ///< metadata `i,j,k,I,J,K`, both corners inclusive
 
 std::string boxText(const IndexBox& box);
-/// Parses `i,j,k,I,J,K`. @return false if it is not six whole numbers with every minimum <= its maximum
+/// Parses `i,j,k,I,J,K`. @return false if it is not just six whole numbers within 2^28, min <= max
 bool parseBox(const std::string& text, IndexBox& box);
 
 /// [world] length of a voxel side.
@@ -47,7 +47,7 @@ double halfWidthOf(const openvdb::FloatGrid& grid);
 std::size_t activeVoxels(const openvdb::FloatGrid& grid);
 /// Sets name, class and the domain's metadata.
 void stampLevelSet(LevelSet& levelSet);
-/// Hash of the values, topology and transform, for the source map.
+/// Hash of values, active states (of leaves and tiles), background and transform; not of metadata.
 std::string levelSetHash(const openvdb::FloatGrid& grid);
 
 /// How true to a distance field a level set is, measured on its active voxels within the band.

@@ -267,6 +267,27 @@ class Signals(CliTest):
             self.ok("convert", "b.vdb", "-o", name, "--quiet")
         self.assertFalse([f for f in self.files() if f.endswith(".tmp")])
 
+    def test_process_one(self):
+        """A container's entry point is process 1, which a child without a parent is given to as well."""
+        own = ["unshare", "--user", "--map-root-user", "--pid", "--fork", "--mount-proc"]
+        if not shutil.which("unshare") or subprocess.run([*own, "true"], capture_output=True).returncode:
+            self.skipTest("a namespace of processes cannot be made here")
+        number = subprocess.run([*own, "sh", "-c", "echo $$"], capture_output=True, text=True).stdout
+        self.assertEqual(number, "1\n")
+        result = subprocess.run([*own, PROGRAM, "make", "grid", "g.vdb", "--resolution", "24"], cwd=self.folder,
+                                capture_output=True, text=True, timeout=60)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("g.vdb", self.files())
+        result = subprocess.run([*own, PROGRAM, "info", "none.vdb"], cwd=self.folder, capture_output=True, text=True, timeout=60)
+        self.assertEqual(result.returncode, 3)
+        self.assertIn("none.vdb: no such file", result.stderr)
+
+    def test_a_worker_without_its_parent_ends(self):
+        result = self.run_tool("make", "grid", "g.vdb", "--resolution", 24,
+                               env={**os.environ, "VDBSYNTH_SUPERVISOR_LINE": f"9,{os.getppid()}"})
+        self.assertEqual(result.returncode, 1)
+        self.assertNotIn("g.vdb", self.files())
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)

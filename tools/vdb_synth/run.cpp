@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/hash.h"
+#include "libvdbsynth/base/machine_memory.h"
 #include "libvdbsynth/io/path.h"
 #include "tools/vdb_synth/options.h"
 #include "tools/vdb_synth/stop_flag.h"
@@ -27,14 +28,6 @@ ProgressStyle progressStyle(const Arguments& arguments) {
                                                                      : ProgressStyle::Off;
 }
 
-// The machine's memory, or what its control group leaves of it, as in a container or under a job scheduler.
-std::uint64_t presentMemory() {
-    std::uint64_t bytes = std::uint64_t(::sysconf(_SC_PHYS_PAGES)) * std::uint64_t(::sysconf(_SC_PAGE_SIZE));
-    for (const char* path : {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
-        std::uint64_t limit = 0;
-        if (std::ifstream(path) >> limit && limit > 0) bytes = std::min(bytes, limit);
-    }
-    return bytes;
 }
 
 nlohmann::json asJson(const std::vector<std::string>& values) {

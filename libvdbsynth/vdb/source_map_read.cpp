@@ -367,8 +367,9 @@ SourceMap sourceMapFrom(const std::string& path, const std::vector<GridPtr>& gri
     GridPtr main = gridNamed(grids, "vote_source");
     if (!main) main = gridNamed(grids, "source");
     if (!main)
-        throw Error(ErrorCode::BadData,
-                    path + ": holds no source map; synth and analogy write one with --source-map");
+        throw Error(
+            ErrorCode::BadData,
+            path + ": holds no source map, such as synth and analogy write where they are asked for one");
     return Reader(path, grids, main).read();
 }
 

@@ -28,8 +28,6 @@ ProgressStyle progressStyle(const Arguments& arguments) {
                                                                      : ProgressStyle::Off;
 }
 
-}
-
 nlohmann::json asJson(const std::vector<std::string>& values) {
     if (values.size() == 1) return values.front();
     return values;

@@ -1,3 +1,4 @@
+#include "libvdbsynth/grid/dense_field.h"
 #include "libvdbsynth/map/patch_map.h"
 
 #include "libvdbsynth/base/error.h"

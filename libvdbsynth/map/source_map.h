@@ -11,6 +11,12 @@
 
 namespace vdbsynth {
 
+/// What attributes and grids that are transferred hold in a result.
+enum class CarriedValues {
+    Copied,  ///< the value at the source with the largest weight
+    Blended  ///< of floats and vectors the mean over all sources, by their weights
+};
+
 /// What a result was made by, which says how it is made again from the map.
 enum class MapMethod {
     Synthesis,  ///< blocks of exemplars, over a target of its own

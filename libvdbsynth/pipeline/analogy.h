@@ -1,5 +1,5 @@
 #pragma once
-#include "libvdbsynth/analogy/volume_analogy.h"
+#include "libvdbsynth/analogy/analogy_options.h"
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/map/source_map.h"
 #include "libvdbsynth/vdb/level_set.h"

@@ -8,12 +8,6 @@
 
 namespace vdbsynth {
 
-/// What attributes and grids that are transferred hold in a result.
-enum class CarriedValues {
-    Copied,  ///< the value at the source with the largest weight
-    Blended  ///< of floats and vectors the mean over all sources, by their weights
-};
-
 /// What came with the exemplars, read through a source map: for every grid that one of them carries one of
 /// the same kind, name and metadata on the result's band inside its domain; grids of one name and kind become
 /// one. A voxel has the value at the source with the largest weight there, or of the nearest active voxel

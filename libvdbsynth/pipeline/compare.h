@@ -1,11 +1,7 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/map/source_map.h"
-#include "libvdbsynth/measure/novelty.h"
-#include "libvdbsynth/measure/patch_distribution.h"
-#include "libvdbsynth/measure/statistics.h"
-#include "libvdbsynth/measure/surface_distance.h"
-#include "libvdbsynth/measure/verdict.h"
+#include "libvdbsynth/measure/measures.h"
 #include "libvdbsynth/procedural/exemplar.h"
 #include "libvdbsynth/vdb/level_set.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/map/source_map.h"
-#include "libvdbsynth/synth/block_synthesis.h"
+#include "libvdbsynth/synth/synthesis_options.h"
 #include "libvdbsynth/vdb/level_set.h"
 
 #include <vector>

@@ -1,7 +1,6 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/map/source_map.h"
-#include "libvdbsynth/pipeline/carry.h"
 #include "libvdbsynth/vdb/level_set.h"
 
 #include <vector>

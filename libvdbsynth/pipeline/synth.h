@@ -1,8 +1,7 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/map/source_map.h"
-#include "libvdbsynth/pipeline/carry.h"
-#include "libvdbsynth/synth/block_synthesis.h"
+#include "libvdbsynth/synth/synthesis_options.h"
 #include "libvdbsynth/synth/target_size.h"
 #include "libvdbsynth/vdb/level_set.h"
 

@@ -45,6 +45,27 @@ def inexact(root):
     return found
 
 
+MOST_PUBLIC = 36
+
+
+def public_breaches(root):
+    """What is installed is small, and complete in itself."""
+    text = (root / "libvdbsynth" / "public_headers.cmake").read_text()
+    public = set(re.findall(r"^  (\S+\.h)$", text, re.M))
+    breaches = []
+    if len(public) > MOST_PUBLIC:
+        breaches.append(f"libvdbsynth/public_headers.cmake: {len(public)} headers; keep steps and internals inside")
+    for header in sorted(public):
+        path = root / "libvdbsynth" / header
+        if not path.exists():
+            breaches.append(f"libvdbsynth/public_headers.cmake: {header} does not exist")
+            continue
+        for include in re.findall(r'#include "libvdbsynth/([^"]+)"', path.read_text()):
+            if include not in public:
+                breaches.append(f"libvdbsynth/{header}: is public and includes {include}, which is not")
+    return breaches
+
+
 def main(root):
     breaches = inexact(root)
     users = {}
@@ -90,6 +111,7 @@ def main(root):
         for number, line in enumerate(path.read_text().splitlines(), 1):
             if not line.lstrip().startswith("//") and any(flag.search(text) for text in literal.findall(line)):
                 breaches.append(f"{path.relative_to(root)}:{number}: names a flag; name the field in backquotes")
+    breaches += public_breaches(root)
     print("\n".join(breaches) if breaches else "the stairs hold")
     return 1 if breaches else 0
 

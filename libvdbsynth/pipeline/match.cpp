@@ -3,7 +3,6 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
-#include "libvdbsynth/search/block_index_data.h"
 #include "libvdbsynth/vdb/mask.h"
 #include "libvdbsynth/vdb/redistance.h"
 
@@ -92,8 +91,11 @@ void validate(const MatchOptions& options, const LevelSet& exemplar, const Level
     requireModel(&exemplar, "the exemplar");
     requireModel(&query, "the query");
     requireBox({options.at, options.at}, "at");
-    blockPositions(BrickField(IndexBox::fromSize(exemplar.domain.size()), 0.f),
-                   options.block);  // refuses a block larger than the domain
+    const Index3 size = exemplar.domain.size();
+    if (options.block > std::min({size.x, size.y, size.z}))
+        throw Error(ErrorCode::Unusable, "`block` " + std::to_string(options.block) +
+                                             ": larger than the exemplar's domain " +
+                                             boxText(exemplar.domain));
     if (std::abs(voxelSizeOf(*exemplar.grid) - voxelSizeOf(*query.grid)) > 1e-5 * voxelSizeOf(*exemplar.grid))
         throw Error(ErrorCode::ShapeMismatch,
                     "the query's voxel size " + std::to_string(voxelSizeOf(*query.grid)) +

@@ -74,6 +74,8 @@ void requireModel(const LevelSet* model, const std::string& what, const RunConte
     if (!model || !model->grid)
         throw Error(ErrorCode::InvalidOption,
                     what + (model ? ": its `grid`" : "") + " is null; a level set is needed");
+    for (const GridPtr& carried : model->carried)
+        if (!carried) throw Error(ErrorCode::InvalidOption, what + ": one of its `carried` grids is null");
     const openvdb::FloatGrid& grid = *model->grid;
     if (grid.getGridClass() == openvdb::GRID_FOG_VOLUME || !(grid.background() > 0))
         throw Error(ErrorCode::Unusable, what +

@@ -94,6 +94,9 @@ std::vector<BadModel> badModels(const LevelSet& good) {
                    })});
     all.push_back({"no active voxels", ErrorCode::EmptyInput,
                    withGrid(good, [](openvdb::FloatGrid& grid) { grid.clear(); })});
+    LevelSet carried = good;
+    carried.carried = {nullptr};
+    all.push_back({"`carried`", ErrorCode::InvalidOption, carried});
     LevelSet empty = good;
     empty.domain = IndexBox();
     all.push_back({"`domain`", ErrorCode::InvalidOption, empty});

@@ -23,6 +23,11 @@ BrickField::BrickField(const IndexBox& box, float value) : mBox(box) {
     if (box.empty()) throw Error(ErrorCode::InvalidOption, "a field needs a box of at least one voxel");
     const Index3 size = box.size();
     mBricks = {(size.x + kSide - 1) / kSide, (size.y + kSide - 1) / kSide, (size.z + kSide - 1) / kSide};
+    constexpr double kMostBricks = 1e11;  // eight bytes each; products of more than 2^64 would wrap
+    if (double(mBricks.x) * mBricks.y * mBricks.z > kMostBricks)
+        throw Error(ErrorCode::Memory, "a field of " + std::to_string(size.x) + " x " +
+                                           std::to_string(size.y) + " x " + std::to_string(size.z) +
+                                           " voxels is too large");
     const std::size_t count = std::size_t(mBricks.x) * std::size_t(mBricks.y) * std::size_t(mBricks.z);
     mSlots.assign(count, -1);
     mConstants.assign(count, value);

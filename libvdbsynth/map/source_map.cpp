@@ -38,8 +38,13 @@ bool reaches(const IndexBox& box, double farthest) {
     return false;
 }
 
-void require(bool sound, const std::string& what) {
-    if (!sound) throw Error(ErrorCode::BadData, "its source map " + what);
+// Thrown inside requireSound, which knows whose map it is.
+struct Unsound {
+    std::string what;
+};
+
+void require(bool sound, const char* what) {
+    if (!sound) throw Unsound{what};
 }
 
 // Where the sources of a number may lie.
@@ -95,6 +100,24 @@ void requireSoundVariants(const SourceMap& map) {
         for (int axis = 0; axis < 3; ++axis)
             require(variant.size[axis] >= 1 && variant.size[axis] <= most, "has a bad variant");
     }
+}
+
+void requireAll(const SourceMap& map) {
+    require(!map.exemplars.empty(), "has no exemplar");
+    for (const MappedExemplar& exemplar : map.exemplars)
+        require(!exemplar.box.empty() && !reaches(exemplar.box, kFarthest), "has a bad exemplar_box");
+    require(!map.targetBox.empty() && !reaches(map.targetBox, kFarthest), "has a bad target_box");
+    requireSoundVariants(map);
+    if (map.method == MapMethod::Analogy)
+        requireSoundElements(map);
+    else
+        requireSoundPatches(map);
+    if (map.method == MapMethod::Analogy) {
+        require(!map.analogy.depths.empty(), "does not say which depths are full");
+        return;
+    }
+    require(map.targetBox.contains(map.targetDomain), "has a domain that lies outside its box");
+    if (map.method == MapMethod::Fill) require(!map.hole.distance.box().empty(), "has no hole");
 }
 
 }  // namespace
@@ -177,22 +200,12 @@ SourceMap finerMap(const SourceMap& map, int factor) {
     return scaled;
 }
 
-void requireSound(const SourceMap& map) {
-    require(!map.exemplars.empty(), "has no exemplar");
-    for (const MappedExemplar& exemplar : map.exemplars)
-        require(!exemplar.box.empty() && !reaches(exemplar.box, kFarthest), "has a bad exemplar_box");
-    require(!map.targetBox.empty() && !reaches(map.targetBox, kFarthest), "has a bad target_box");
-    requireSoundVariants(map);
-    if (map.method == MapMethod::Analogy)
-        requireSoundElements(map);
-    else
-        requireSoundPatches(map);
-    if (map.method == MapMethod::Analogy) {
-        require(!map.analogy.depths.empty(), "does not say which depths are full");
-        return;
+void requireSound(const SourceMap& map, const std::string& what) {
+    try {
+        requireAll(map);
+    } catch (const Unsound& unsound) {
+        throw Error(ErrorCode::BadData, what + " " + unsound.what);
     }
-    require(map.targetBox.contains(map.targetDomain), "has a domain that lies outside its box");
-    if (map.method == MapMethod::Fill) require(!map.hole.distance.box().empty(), "has no hole");
 }
 
 }  // namespace vdbsynth

@@ -125,7 +125,8 @@ SourceMap finerMap(const SourceMap& map, int factor);
 /// One box as finerMap has it.
 IndexBox finerBox(const IndexBox& box, int factor);
 
-/// Checks what a file may hold and no run makes. @throw Error BadData "its source map ..."
-void requireSound(const SourceMap& map);
+/// Checks what a file may hold and no run makes. @param what  begins the message
+/// @throw Error BadData
+void requireSound(const SourceMap& map, const std::string& what = "the source map");
 
 }  // namespace vdbsynth

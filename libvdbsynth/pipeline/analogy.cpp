@@ -1,6 +1,7 @@
 #include "libvdbsynth/pipeline/analogy.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/pipeline/analogy_steps.h"
 #include "libvdbsynth/pipeline/carry.h"
@@ -153,13 +154,50 @@ AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const Leve
 
 }  // namespace
 
-AnalogyResult makeAnalogyModel(const std::vector<AnalogyModelPair>& pairs, const LevelSet& target,
-                               const AnalogyOptions& options, const RunContext& ctx) {
-    requireOption(options.scale >= 0.25 && options.scale <= 4, "scale", std::to_string(options.scale),
+namespace {
+
+void requireDirection(const DirectionSource& source, const char* field) {
+    using Kind = DirectionSource::Kind;
+    const auto finite = [](const Vec3d& v) { return std::isfinite(dot(v, v)); };
+    requireOption(source.kind != Kind::Grid || source.grid, field, "Grid", "given with a `grid`");
+    const bool axis = source.kind == Kind::Axis || source.kind == Kind::Around;
+    requireOption(!axis || (finite(source.axis) && dot(source.axis, source.axis) > 0), field,
+                  "Axis or Around", "given with an `axis` that is not 0");
+    if (source.kind != Kind::Strokes) return;
+    requireOption(!source.strokes.empty(), field, "Strokes", "given with `strokes`");
+    for (const Stroke& stroke : source.strokes)
+        requireOption(finite(stroke.position) && finite(stroke.direction), field, "Strokes",
+                      "given with `strokes` of finite numbers");
+}
+
+}  // namespace
+
+void validate(const AnalogyOptions& options, const std::vector<AnalogyModelPair>& pairs,
+              const LevelSet& target) {
+    requireOption(options.scale >= 0.25 && options.scale <= 4, "scale", roundedText(options.scale, 6),
                   "from 0.25 to 4");
     requireOption(options.strength >= 0 && options.strength <= 1, "strength",
-                  std::to_string(options.strength), "from 0 to 1");
-    return withThreads(ctx, [&] { return madeAnalogy(pairs, target, options, ctx); });
+                  roundedText(options.strength, 6), "from 0 to 1");
+    validate(options.synthesis);
+    requireHalfWidth(double(options.halfWidth));
+    requireDirection(options.direction, "direction");
+    requireDirection(options.exemplarDirection, "exemplarDirection");
+    requireOption(!pairs.empty(), "pairs", "0", "at least one");
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+        const std::string what = pairs.size() > 1 ? "pair " + std::to_string(p + 1) : "the pair";
+        requireModel(pairs[p].plain, what + ", plain");
+        requireModel(pairs[p].textured, what + ", textured");
+        requireOnePlace(pairs[p]);
+    }
+    requireModel(&target, "the target");
+}
+
+AnalogyResult makeAnalogyModel(const std::vector<AnalogyModelPair>& pairs, const LevelSet& target,
+                               const AnalogyOptions& options, const RunContext& ctx) {
+    return withThreads(ctx, [&] {
+        validate(options, pairs, target);
+        return madeAnalogy(pairs, target, options, ctx);
+    });
 }
 
 }  // namespace vdbsynth

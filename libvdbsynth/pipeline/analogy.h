@@ -45,7 +45,7 @@ struct AnalogyOptions {
     double scale = 1;              ///< of the texture, 0.25..4: 2 is twice as large in the target's voxels
     double strength = 1;           ///< 0..1: how far the target becomes the result
     GridConstPtr mask;             ///< 0..1 over the target, by which strength is multiplied; null: 1
-    float halfWidth = kHalfWidth;  ///< [voxels] of the result
+    float halfWidth = kHalfWidth;  ///< [voxels] of the result, 1.5..100
     bool keepDirections = false;   ///< fills AnalogyResult::directions
 };
 
@@ -53,6 +53,12 @@ struct AnalogyModelPair {
     const LevelSet* plain = nullptr;
     const LevelSet* textured = nullptr;
 };
+
+/// @throw Error InvalidOption (a field out of its range, no pairs, null models, a direction without its grid,
+/// axis or strokes), ShapeMismatch (the models of a pair differ in voxels), and what requireModel
+/// (vdb/level_set.h) throws
+void validate(const AnalogyOptions& options, const std::vector<AnalogyModelPair>& pairs,
+              const LevelSet& target);
 
 struct AnalogyResult {
     LevelSet model;
@@ -68,7 +74,7 @@ struct AnalogyResult {
 /// textured models carry comes along. Faces of recorded domains that a solid touches are cuts: the pair goes
 /// on beyond them and nothing is copied from there, a target is capped there again; elsewhere the result may
 /// grow out of its domain.
-/// @throw Error InvalidOption, ShapeMismatch (the models of a pair differ in voxels or place), Unusable (a
+/// @throw Error as validate; ShapeMismatch (the models of a pair lie apart), Unusable (a
 /// pair too small, a texture that goes too far from the surface, no direction possible), EmptyInput, Memory,
 /// Cancelled
 /// @par Cost    see makeAnalogy    @par Repeats same bits for any number of threads

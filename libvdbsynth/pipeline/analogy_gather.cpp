@@ -13,17 +13,6 @@
 namespace vdbsynth {
 namespace {
 
-void requireOnePlace(const AnalogyModelPair& pair) {
-    const auto& a = pair.plain->grid->transform();
-    const auto& b = pair.textured->grid->transform();
-    if (!(a == b))
-        throw Error(ErrorCode::ShapeMismatch,
-                    "the two models of the pair must have the same voxels in the same place: voxel sizes " +
-                        std::to_string(voxelSizeOf(*pair.plain->grid)) + " and " +
-                        std::to_string(voxelSizeOf(*pair.textured->grid)) +
-                        "; convert both with the same `voxelSize`");
-}
-
 BrickField scaled(const BrickField& field, double scale, const RunContext& ctx) {
     const Index3 size = field.box().size();
     Index3 to;
@@ -44,6 +33,17 @@ BrickField gatherTextured(const LevelSet& textured, const IndexBox& box, const C
                           double scale, const RunContext& ctx) {
     BrickField field = widenBand(*textured.grid, box, cut, reach, ctx);
     return scale == 1 ? field : scaled(field, scale, ctx);
+}
+
+void requireOnePlace(const AnalogyModelPair& pair) {
+    const auto& a = pair.plain->grid->transform();
+    const auto& b = pair.textured->grid->transform();
+    if (!(a == b))
+        throw Error(ErrorCode::ShapeMismatch,
+                    "the two models of the pair must have the same voxels in the same place: voxel sizes " +
+                        std::to_string(voxelSizeOf(*pair.plain->grid)) + " and " +
+                        std::to_string(voxelSizeOf(*pair.textured->grid)) +
+                        "; convert both with the same `voxelSize`");
 }
 
 CutFaces facesTouched(const LevelSet& model) {
@@ -80,7 +80,6 @@ float reachOf(const BrickField& plain, const BrickField& textured) {
 }
 
 PairFields gatherPair(const AnalogyModelPair& pair, double scale, const RunContext& ctx) {
-    requireOnePlace(pair);
     const CutFaces cutPlain = facesTouched(*pair.plain), cutTextured = facesTouched(*pair.textured);
     CutFaces cut;
     for (std::size_t f = 0; f < cut.size(); ++f) cut[f] = cutPlain[f] || cutTextured[f];

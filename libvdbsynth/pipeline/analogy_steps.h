@@ -20,6 +20,9 @@ struct FieldPlace {
 
 inline constexpr int kMostReach = 40;  ///< [voxels] that a texture may go from its plain surface
 
+/// @throw Error ShapeMismatch unless the models of a pair have the same voxels
+void requireOnePlace(const AnalogyModelPair& pair);
+
 /// Which faces of its recorded domain a solid goes through.
 CutFaces facesTouched(const LevelSet& model);
 /// A domain with room at the faces that are no cuts.

@@ -232,10 +232,25 @@ Comparison compared(const CompareInput& reference, const std::vector<CompareInpu
 
 }  // namespace
 
-Comparison compareModels(const CompareInput& reference, const std::vector<CompareInput>& others,
-                         const CompareOptions& options, const RunContext& ctx) {
+namespace {
+
+void requireInput(const CompareInput& input) {
+    const std::string what = input.name.empty() ? "a model" : input.name;
+    requireModel(&input.model, what);
+    if ((input.source && !input.source->isType<openvdb::Vec3IGrid>()) ||
+        (input.exemplar && !input.exemplar->isType<openvdb::Int32Grid>()))
+        throw Error(ErrorCode::BadData,
+                    what + ": its source map is none; `source` is a grid of Vec3I, `exemplar` one of Int32");
+}
+
+}  // namespace
+
+void validate(const CompareOptions& options, const CompareInput& reference,
+              const std::vector<CompareInput>& others) {
     requireOption(options.fresh >= 2 && options.fresh <= 100, "fresh", std::to_string(options.fresh),
                   "a whole number from 2 to 100");
+    requireInput(reference);
+    for (const CompareInput& other : others) requireInput(other);
     if (options.process && !reference.model.domainRecorded)
         throw Error(ErrorCode::Unusable, reference.name +
                                              ": has no recorded domain, so `process` cannot "
@@ -245,7 +260,18 @@ Comparison compareModels(const CompareInput& reference, const std::vector<Compar
         (std::min({size.x, size.y, size.z}) < 8 || std::max({size.x, size.y, size.z}) > 4096))
         throw Error(ErrorCode::Unusable,
                     reference.name + ": `process` makes domains of 8 to 4096 voxels a side only");
-    return withThreads(ctx, [&] { return compared(reference, others, options, ctx); });
+    if (!options.process) return;
+    ExemplarOptions process = *options.process;
+    process.size = size;
+    validate(process);
+}
+
+Comparison compareModels(const CompareInput& reference, const std::vector<CompareInput>& others,
+                         const CompareOptions& options, const RunContext& ctx) {
+    return withThreads(ctx, [&] {
+        validate(options, reference, others);
+        return compared(reference, others, options, ctx);
+    });
 }
 
 }  // namespace vdbsynth

@@ -29,6 +29,12 @@ struct CompareInput {
     std::optional<std::vector<MappedVoxel>> sources;
 };
 
+/// @throw Error InvalidOption (a field out of its range), Unusable (a process that cannot make the
+/// reference's size, or does not know it), BadData (a source map of other kinds of grid), and what
+/// requireModel (vdb/level_set.h) throws
+void validate(const CompareOptions& options, const CompareInput& reference,
+              const std::vector<CompareInput>& others);
+
 /// Gives the input the source map among some grids. @return false if there is none in the model's voxels
 bool takeSourceMap(const std::vector<GridPtr>& grids, CompareInput& input);
 
@@ -84,7 +90,7 @@ struct Comparison {
 
 /// Statistics of a reference and of other models, and how far they are apart: docs/measures.md defines each.
 /// All models should have one voxel size; values are in voxels.
-/// @throw Error InvalidOption, Memory, Cancelled, Unusable (a process that cannot make the domain's size)
+/// @throw Error as validate; Memory, Cancelled
 /// @par Cost    256^3: some seconds a model   @par Repeats same bits for ctx.seed, any number of threads
 Comparison compareModels(const CompareInput& reference, const std::vector<CompareInput>& others,
                          const CompareOptions& options = {}, const RunContext& ctx = {});

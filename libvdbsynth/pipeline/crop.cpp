@@ -64,7 +64,11 @@ LevelSet cropped(const LevelSet& model, const IndexBox& box, const RunContext& c
 }  // namespace
 
 LevelSet cropModel(const LevelSet& model, const IndexBox& box, const RunContext& ctx) {
-    return withThreads(ctx, [&] { return cropped(model, box, ctx); });
+    return withThreads(ctx, [&] {
+        requireModel(&model, "the model", ctx);
+        requireBox(box, "box");
+        return cropped(model, box, ctx);
+    });
 }
 
 }  // namespace vdbsynth

@@ -5,7 +5,8 @@
 namespace vdbsynth {
 
 /// The part of a model inside an index box, capped half a voxel outside it, with the box as recorded domain.
-/// @throw Error EmptyInput (nothing in the box), Memory, Cancelled
+/// @throw Error InvalidOption (an empty box) and what requireModel (vdb/level_set.h) throws; EmptyInput
+/// (nothing in the box), Memory, Cancelled
 /// @par Repeats same bits for any number of threads
 LevelSet cropModel(const LevelSet& model, const IndexBox& box, const RunContext& ctx = {});
 

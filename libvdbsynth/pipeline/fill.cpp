@@ -1,6 +1,7 @@
 #include "libvdbsynth/pipeline/fill.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/geometry/point_neighbours.h"
 #include "libvdbsynth/grid/mesh_distance.h"
@@ -118,6 +119,8 @@ std::vector<Vec3f> closingSheets(const LevelSet& partial, const RunContext& ctx)
 }  // namespace
 
 LevelSet boxHole(const LevelSet& partial, const IndexBox& box, const RunContext& ctx) {
+    requireModel(&partial, "the partial model", ctx);
+    requireBox(box, "box");
     return holeFrom(partial, box, ctx, [&](const Index3& p) {
         float outside = 0, inside = -1e9f;
         for (int axis = 0; axis < 3; ++axis) {
@@ -131,6 +134,7 @@ LevelSet boxHole(const LevelSet& partial, const IndexBox& box, const RunContext&
 }
 
 LevelSet holesAtOpenEdges(const LevelSet& partial, const RunContext& ctx) {
+    requireModel(&partial, "the partial model", ctx);
     if (!partial.source)
         throw Error(ErrorCode::Unusable,
                     "`hole`: needs a mesh, whose open edges say where the holes are; give a model or a box");
@@ -227,9 +231,29 @@ FillResult filledHoles(const LevelSet& partial, const LevelSet& hole, const Leve
 
 }  // namespace
 
+void validate(const FillOptions& options, const LevelSet& partial, const LevelSet& hole,
+              const LevelSet* exemplar) {
+    requireOption(options.block == 0 || (options.block >= 4 && options.block <= 256), "block",
+                  std::to_string(options.block), "a whole number from 4 to 256");
+    requireOption(options.levels >= 0 && options.levels <= 8, "levels", std::to_string(options.levels),
+                  "a whole number from 1 to 8");
+    requireModel(&partial, "the partial model");
+    requireModel(&hole, "the hole");
+    if (!exemplar) return;
+    requireModel(exemplar, "the exemplar");
+    const double voxel = voxelSizeOf(*exemplar->grid), own = voxelSizeOf(*partial.grid);
+    if (std::abs(voxel - own) > 1e-4 * own)
+        throw Error(ErrorCode::ShapeMismatch, "the exemplar's voxel size " + roundedText(voxel, 6) +
+                                                  " is not the partial model's " + roundedText(own, 6) +
+                                                  "; convert it with `voxelSize` " + roundedText(own, 6));
+}
+
 FillResult fillHoles(const LevelSet& partial, const LevelSet& hole, const LevelSet* exemplar,
                      const FillOptions& options, const RunContext& ctx) {
-    return withThreads(ctx, [&] { return filledHoles(partial, hole, exemplar, options, ctx); });
+    return withThreads(ctx, [&] {
+        validate(options, partial, hole, exemplar);
+        return filledHoles(partial, hole, exemplar, options, ctx);
+    });
 }
 
 }  // namespace vdbsynth

@@ -13,6 +13,12 @@ struct FillOptions {
     int levels = 0;  ///< see BlockSynthesisOptions; 0: one where the hole is closed already, see fillHoles
 };
 
+/// @param exemplar  or null
+/// @throw Error InvalidOption (a field out of its range, null grids), ShapeMismatch (an exemplar of other
+/// voxels than the partial's), and what requireModel (vdb/level_set.h) throws
+void validate(const FillOptions& options, const LevelSet& partial, const LevelSet& hole,
+              const LevelSet* exemplar);
+
 struct FillResult {
     LevelSet model;
     SourceMap map;  ///< what repeatMap (repeat.h) reads the result through; has the hole
@@ -29,13 +35,14 @@ struct FillResult {
 /// @param partial   any model; a recorded domain ends what is known and what is rebuilt
 /// @param hole      level set whose inside is to be filled; any transform of the partial's voxel size
 /// @param exemplar  of the partial's voxel size, its domain; null: the partial outside the hole
-/// @throw Error Unusable (hole outside the model, nothing left to fill from), Memory, Cancelled
+/// @throw Error as validate; Unusable (hole outside the model, nothing left to fill from), Memory, Cancelled
 /// @par Cost    that of optimizeTexture on the hole's box, and dense arrays of the exemplar's
 /// @par Repeats same bits for (inputs, options, ctx.seed), any number of threads
 FillResult fillHoles(const LevelSet& partial, const LevelSet& hole, const LevelSet* exemplar,
                      const FillOptions& options = {}, const RunContext& ctx = {});
 
 /// A box of the partial's voxels as a hole. @param box  both corners inclusive
+/// @throw Error InvalidOption (an empty box, null grids), Memory
 LevelSet boxHole(const LevelSet& partial, const IndexBox& box, const RunContext& ctx = {});
 
 /// Balls of three voxels round every place of the surface that is no face of the mesh that the partial was

@@ -69,9 +69,6 @@ FilterGridResult filtered(const std::vector<FilterGridPair>& pairs, const FloatG
     const int reach = filterReach(options) + BrickField::kSide;
     std::vector<BrickField> fields;
     for (const FilterGridPair& pair : pairs) {
-        if (!(pair.before->transform() == pair.after->transform()))
-            throw Error(ErrorCode::ShapeMismatch,
-                        "the two grids of the pair must have the same voxels in the same place");
         const IndexBox a = activeBox(*pair.before, "the pair's first grid"),
                        b = activeBox(*pair.after, "the pair's second grid");
         IndexBox box = a;
@@ -99,9 +96,28 @@ bool isGridOfNumbers(const FloatGridConstPtr& grid) {
     return grid->getGridClass() != openvdb::GRID_LEVEL_SET;
 }
 
+void validate(const FilterAnalogyOptions& options, const std::vector<FilterGridPair>& pairs,
+              const FloatGridConstPtr& target) {
+    validate(options);
+    requireOption(!pairs.empty(), "pairs", "0", "at least one");
+    for (const FilterGridPair& pair : pairs) {
+        if (!pair.before || !pair.after)
+            throw Error(ErrorCode::InvalidOption, "`before`, `after`: a grid of a pair is null");
+        if (!(pair.before->transform() == pair.after->transform()))
+            throw Error(ErrorCode::ShapeMismatch,
+                        "the two grids of the pair must have the same voxels in the same place");
+    }
+    if (!target) throw Error(ErrorCode::InvalidOption, "the target is null; a grid of numbers is needed");
+    if (!isGridOfNumbers(target))
+        throw Error(ErrorCode::Unusable, "the target is a level set; a grid of numbers is needed");
+}
+
 FilterGridResult makeFilteredGrid(const std::vector<FilterGridPair>& pairs, const FloatGridConstPtr& target,
                                   const FilterAnalogyOptions& options, const RunContext& ctx) {
-    return withThreads(ctx, [&] { return filtered(pairs, target, options, ctx); });
+    return withThreads(ctx, [&] {
+        validate(options, pairs, target);
+        return filtered(pairs, target, options, ctx);
+    });
 }
 
 }  // namespace vdbsynth

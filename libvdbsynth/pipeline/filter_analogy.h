@@ -12,6 +12,11 @@ struct FilterGridPair {
     FloatGridConstPtr before, after;
 };
 
+/// @throw Error InvalidOption (a field out of its range, no pairs, null grids), Unusable (a target that is a
+/// level set, a frustum), ShapeMismatch (a pair's grids have different voxels)
+void validate(const FilterAnalogyOptions& options, const std::vector<FilterGridPair>& pairs,
+              const FloatGridConstPtr& target);
+
 struct FilterGridResult {
     GridPtr grid;  ///< of floats
     FilterAnalogyStats stats;
@@ -21,8 +26,8 @@ struct FilterGridResult {
 /// differ from its background are active; a fog volume stays one, at least 0. Voxels count, not the world:
 /// the target may have other voxels than the pairs.
 /// @param target  any class but a level set; its name, class and transform are the result's
-/// @throw Error InvalidOption, ShapeMismatch (a pair's grids have different voxels), EmptyInput (no active
-/// voxel), BadData (a value that is no number), Unusable (too little to learn from), Memory, Cancelled
+/// @throw Error as validate; EmptyInput (no active voxel), BadData (a value that is no number), Unusable (too
+/// little to learn from), Memory, Cancelled
 /// @par Cost    see makeFilterAnalogy; memory about 20 bytes a voxel of the active box
 /// @par Repeats same bits for any number of threads
 FilterGridResult makeFilteredGrid(const std::vector<FilterGridPair>& pairs, const FloatGridConstPtr& target,

@@ -1,6 +1,7 @@
 #include "libvdbsynth/pipeline/make.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/pipeline/analogy.h"
 #include "libvdbsynth/pipeline/field_model_steps.h"
@@ -13,7 +14,7 @@ namespace vdbsynth {
 namespace {
 
 void requireVoxelSize(double voxelSize) {
-    requireOption(voxelSize > 0 && voxelSize < 1e30, "voxelSize", std::to_string(voxelSize),
+    requireOption(voxelSize > 0 && voxelSize < 1e30, "voxelSize", roundedText(voxelSize, 6),
                   "above 0 (world)");
 }
 
@@ -38,13 +39,19 @@ LevelSet modelOf(const MakeOptions& options, const RunContext& ctx) {
 
 }  // namespace
 
+void validate(const MakeOptions& options) {
+    requireVoxelSize(options.voxelSize);
+    validate(options.exemplar);
+}
+
 ModelPair makePair(const MakeOptions& options, const RunContext& ctx) {
     requireVoxelSize(options.voxelSize);
+    validatePair(options.exemplar);
     return withThreads(ctx, [&] { return pairOf(options, ctx); });
 }
 
 LevelSet makeModel(const MakeOptions& options, const RunContext& ctx) {
-    requireVoxelSize(options.voxelSize);
+    validate(options);
     return withThreads(ctx, [&] { return modelOf(options, ctx); });
 }
 

@@ -10,6 +10,9 @@ struct MakeOptions {
     double voxelSize = 1;  ///< [world], above 0
 };
 
+/// @throw Error InvalidOption (unknown kind, a field out of its range)
+void validate(const MakeOptions& options);
+
 /// A procedural exemplar as a level set with a recorded domain, clipped and capped half a voxel outside it.
 /// @throw Error InvalidOption, Memory, EmptyInput (nothing in the domain), Cancelled
 /// @par Repeats same bits for (options, ctx.seed), any number of threads

@@ -1,8 +1,8 @@
 #include "libvdbsynth/pipeline/match.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
-#include "libvdbsynth/search/block_index_data.h"
 #include "libvdbsynth/vdb/mask.h"
 #include "libvdbsynth/vdb/redistance.h"
 
@@ -31,24 +31,12 @@ void judge(const std::vector<BlockMatch>& exact, MatchResult& result) {
 
 MatchResult matched(const LevelSet& exemplar, const LevelSet& query, const MatchOptions& options,
                     const RunContext& ctx) {
-    blockPositions(BrickField(IndexBox::fromSize(exemplar.domain.size()), 0.f),
-                   options.block);  // refuses a block larger than the domain
-    if (std::abs(voxelSizeOf(*exemplar.grid) - voxelSizeOf(*query.grid)) > 1e-5 * voxelSizeOf(*exemplar.grid))
-        throw Error(ErrorCode::ShapeMismatch,
-                    "the query's voxel size " + std::to_string(voxelSizeOf(*query.grid)) +
-                        " is not the exemplar's " + std::to_string(voxelSizeOf(*exemplar.grid)) +
-                        "; convert one of them with `voxelSize`");
     const float band = std::max(8.f, float(options.block) / 2);
     const auto field = std::make_shared<const BrickField>(
         widenBand(*exemplar.grid, exemplar.domain, facesOf(exemplar), band, ctx));
     // The query's block is read from its whole domain, so that a block matched in its own model costs exactly
     // 0.
     const IndexBox box = IndexBox::cube(options.at, options.block);
-    if (query.domain.intersection(box).empty())
-        throw Error(ErrorCode::Unusable,
-                    "`at` " + std::to_string(options.at.x) + "," + std::to_string(options.at.y) + "," +
-                        std::to_string(options.at.z) + ": the block lies outside the query's domain " +
-                        boxText(query.domain));
     IndexBox reach = query.domain;
     for (int axis = 0; axis < 3; ++axis) {
         reach.min[axis] = std::min(reach.min[axis], box.min[axis]);
@@ -93,13 +81,41 @@ MatchResult matched(const LevelSet& exemplar, const LevelSet& query, const Match
 
 }  // namespace
 
-MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const MatchOptions& options,
-                       const RunContext& ctx) {
+void validate(const MatchOptions& options, const LevelSet& exemplar, const LevelSet& query) {
     requireOption(options.block >= 4 && options.block <= 256, "block", std::to_string(options.block),
                   "a whole number from 4 to 256");
     requireOption(options.count >= 1 && options.count <= 100000, "count", std::to_string(options.count),
                   "a whole number from 1 to 100000");
-    return withThreads(ctx, [&] { return matched(exemplar, query, options, ctx); });
+    requireOption(options.tolerance >= 0 && options.tolerance <= 100, "tolerance",
+                  roundedText(options.tolerance, 6), "from 0 to 100");
+    requireModel(&exemplar, "the exemplar");
+    requireModel(&query, "the query");
+    requireBox({options.at, options.at}, "at");
+    const Index3 size = exemplar.domain.size();
+    if (options.block > std::min({size.x, size.y, size.z}))
+        throw Error(ErrorCode::Unusable, "`block` " + std::to_string(options.block) +
+                                             ": larger than the exemplar's domain " +
+                                             boxText(exemplar.domain));
+    if (std::abs(voxelSizeOf(*exemplar.grid) - voxelSizeOf(*query.grid)) > 1e-5 * voxelSizeOf(*exemplar.grid))
+        throw Error(ErrorCode::ShapeMismatch,
+                    "the query's voxel size " + std::to_string(voxelSizeOf(*query.grid)) +
+                        " is not the exemplar's " + std::to_string(voxelSizeOf(*exemplar.grid)) +
+                        "; convert one of them with `voxelSize`");
+    const IndexBox box = IndexBox::cube(options.at, options.block);
+    if (query.domain.intersection(box).empty())
+        throw Error(ErrorCode::Unusable,
+                    "`at` " + std::to_string(options.at.x) + "," + std::to_string(options.at.y) + "," +
+                        std::to_string(options.at.z) + ": the block lies outside the query's domain " +
+                        boxText(query.domain));
+    if (options.mask) requireMaskFor(*options.mask, *query.grid);
+}
+
+MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const MatchOptions& options,
+                       const RunContext& ctx) {
+    return withThreads(ctx, [&] {
+        validate(options, exemplar, query);
+        return matched(exemplar, query, options, ctx);
+    });
 }
 
 }  // namespace vdbsynth

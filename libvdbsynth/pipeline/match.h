@@ -27,10 +27,14 @@ struct MatchResult {
     double exactnessRatio = 1, recall = 1;
 };
 
+/// @throw Error InvalidOption (a field out of its range, null models), ShapeMismatch (other voxels than the
+/// exemplar's, a mask in other voxels than the query's), Unusable (block larger than the domain, outside the
+/// query's), and what requireModel (vdb/level_set.h) throws
+void validate(const MatchOptions& options, const LevelSet& exemplar, const LevelSet& query);
+
 /// The blocks of an exemplar's domain most like one of the query's, exact; distances are compared in voxels,
 /// clamped to max(8, N/2). With a tolerance: at most (1 + tolerance) times as different.
-/// @throw Error InvalidOption, Unusable (block larger than the domain, no known sample), Memory, Io
-/// (indexCache), Cancelled
+/// @throw Error as validate; Unusable (no known sample), Memory, Io (indexCache), Cancelled
 /// @par Repeats same bits for any number of threads
 MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const MatchOptions& options,
                        const RunContext& ctx = {});

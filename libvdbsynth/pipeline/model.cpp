@@ -175,20 +175,29 @@ LevelSet loaded(const std::string& path, const ModelOptions& options, const RunC
 
 }  // namespace
 
-LevelSet loadModel(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
-    requireModelPath(path);
+void validate(const ModelOptions& options) {
     requireOption(options.voxelSize >= 0 && options.voxelSize < 1e30, "voxelSize",
-                  std::to_string(options.voxelSize), "above 0 (world)");
+                  roundedText(options.voxelSize, 6), "above 0 (world)");
     requireOption(options.resolution == 0 || (options.resolution >= 2 && options.resolution <= 100000),
                   "resolution", std::to_string(options.resolution), "a whole number from 2 to 100000");
-    requireOption(options.halfWidth >= 1.5 && options.halfWidth <= 100, "halfWidth",
-                  std::to_string(options.halfWidth), "from 1.5 to 100 voxels");
+    requireHalfWidth(options.halfWidth);
+    validate(options.solid);
+    VdbReadOptions read;
+    read.iso = options.iso;
+    validate(read);
+    validate(options.heights);
+    validate(options.volume);
+}
+
+LevelSet loadModel(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
+    requireModelPath(path);
+    validate(options);
     return withThreads(ctx, [&] { return loaded(path, options, ctx); });
 }
 
 LevelSet withHalfWidth(const LevelSet& model, double halfWidth, const RunContext& ctx) {
-    requireOption(halfWidth >= 1.5 && halfWidth <= 100, "halfWidth", std::to_string(halfWidth),
-                  "from 1.5 to 100 voxels");
+    requireHalfWidth(halfWidth);
+    requireModel(&model, "the model", ctx);
     const double present = halfWidthOf(*model.grid);
     if (std::abs(present - halfWidth) < 1e-3 * halfWidth) return model;
     message(ctx, MessageLevel::Detail,

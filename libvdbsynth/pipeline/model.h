@@ -25,6 +25,9 @@ struct ModelOptions {
     bool imageAsVolume = false;  ///< takes an image for a volume of one slice
 };
 
+/// @throw Error InvalidOption (a field out of its range)
+void validate(const ModelOptions& options);
+
 inline constexpr int kDefaultResolution = 128;
 
 /// True if the path's extension is one that loadModel reads.
@@ -35,8 +38,9 @@ bool isMeshPath(const std::string& path);
 void requireModelPath(const std::string& path);
 
 /// Any supported geometry as a level set: the one door of every command that wants a model.
-/// @throw Error  as readVdbModel (vdb/vdb_file.h), readMesh (io/mesh_file.h), readRaster (io/raster_file.h),
-/// heightField and volumeField (grid/raster_field.h) and meshToSolid (vdb/mesh_conversion.h)
+/// @throw Error  as validate, readVdbModel (vdb/vdb_file.h), readMesh (io/mesh_file.h), readRaster
+/// (io/raster_file.h), heightField and volumeField (grid/raster_field.h) and meshToSolid
+/// (vdb/mesh_conversion.h)
 /// @par Repeats  same bits for any number of threads
 LevelSet loadModel(const std::string& path, const ModelOptions& options = {}, const RunContext& ctx = {});
 

@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/raster_file.h"
@@ -104,9 +105,10 @@ void requireOutputPaths(const std::vector<std::string>& paths) {
     }
 }
 
-void writeModel(const LevelSet& model, const std::vector<std::string>& paths,
-                const ModelOutputOptions& options, OutputSet& outputs, const RunContext& ctx) {
-    requireOutputPaths(paths);
+namespace {
+
+void writeAll(const LevelSet& model, const std::vector<std::string>& paths, const ModelOutputOptions& options,
+              OutputSet& outputs, const RunContext& ctx) {
     std::vector<std::string> temporaries;
     for (const std::string& path : paths) temporaries.push_back(outputs.add(path));
     std::optional<Mesh> mesh;
@@ -115,6 +117,32 @@ void writeModel(const LevelSet& model, const std::vector<std::string>& paths,
         writeOne(model, paths[i], temporaries[i], options, mesh, ctx);
         stage.advance();
     }
+}
+
+}  // namespace
+
+void validate(const ModelOutputOptions& options) {
+    MeshingOptions meshing;
+    meshing.adaptivity = options.adaptivity;
+    meshing.sharp = options.sharp;
+    validate(meshing);
+    PointOptions points;
+    points.spacing = options.spacing;
+    validate(points);
+    requireOption(options.height >= 0 && options.height < 1e30, "height", roundedText(options.height, 6),
+                  "above 0 (world), or 0 for the highest place");
+    for (const GridPtr& grid : options.extraGrids)
+        requireOption(grid != nullptr, "extraGrids", "null", "grids");
+}
+
+void writeModel(const LevelSet& model, const std::vector<std::string>& paths,
+                const ModelOutputOptions& options, OutputSet& outputs, const RunContext& ctx) {
+    requireOutputPaths(paths);
+    withThreads(ctx, [&] {
+        validate(options);
+        requireModel(&model, "the model", ctx);
+        writeAll(model, paths, options, outputs, ctx);
+    });
 }
 
 }  // namespace vdbsynth

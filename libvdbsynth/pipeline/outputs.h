@@ -21,13 +21,16 @@ struct ModelOutputOptions {
     VdbMetadata metadata;                 ///< of .vdb outputs
 };
 
+/// @throw Error InvalidOption (a field out of its range, both `sharp` and `adaptivity`, null grids)
+void validate(const ModelOutputOptions& options);
+
 /// @throw Error InvalidOption if a path's extension is none that writeModel writes
 void requireOutputPaths(const std::vector<std::string>& paths);
 
 /// Writes one model to every path, kind by extension: .vdb, .obj, .ply, .stl, .off, .glb, .gltf; .png (16
 /// bits) and .exr hold the height of the topmost surface over the domain, a pixel a voxel. The mesh is made
 /// once. Nothing is renamed into place; `outputs.commit()` does that.
-/// @throw Error InvalidOption, Io, EmptyInput (no surface to mesh)
+/// @throw Error as validate and requireModel (vdb/level_set.h); Io, EmptyInput (no surface to mesh)
 /// @par Repeats byte for byte for equal models and metadata
 void writeModel(const LevelSet& model, const std::vector<std::string>& paths,
                 const ModelOutputOptions& options, OutputSet& outputs, const RunContext& ctx = {});

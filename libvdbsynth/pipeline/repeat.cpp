@@ -100,6 +100,7 @@ LevelSet repeatMap(const SourceMap& given, const LevelSets& inputs, const Repeat
                   "halfWidth", roundedText(double(options.halfWidth), 6), "from 1.5 to 100 voxels");
     requireOption(options.carried == CarriedValues::Copied || given.method == MapMethod::Synthesis, "carried",
                   "blended", "copied for the map of an analogy or a fill, whose voxels have one source each");
+    requireSound(given);
     if (inputs.size() != given.inputs())
         throw Error(ErrorCode::ShapeMismatch,
                     "the source map was made with " + std::to_string(given.inputs()) +
@@ -108,7 +109,10 @@ LevelSet repeatMap(const SourceMap& given, const LevelSets& inputs, const Repeat
                              ? " models, the kept one last"
                              : " models, the textured one of each pair and the one it was put on last") +
                         "; give as many, in the same order");
-    return withThreads(ctx, [&] { return repeated(given, inputs, options, ctx); });
+    return withThreads(ctx, [&] {
+        for (const LevelSet* model : inputs) requireModel(model, "the model");
+        return repeated(given, inputs, options, ctx);
+    });
 }
 
 }  // namespace vdbsynth

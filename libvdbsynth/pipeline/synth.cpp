@@ -1,6 +1,7 @@
 #include "libvdbsynth/pipeline/synth.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/grid/pyramid.h"
 #include "libvdbsynth/pipeline/carry.h"
@@ -40,10 +41,6 @@ void choose(const SynthOptions& options, const openvdb::FloatGrid& like, SynthPl
             const RunContext& ctx) {
     if (!options.exemplarMap && !options.rotationMap && !options.scaleMap) return;
     const int exemplars = int(plan.map.exemplars.size());
-    if (exemplars > 1 && !options.exemplarMap)
-        throw Error(
-            ErrorCode::InvalidOption,
-            "`rotationMap`, `scaleMap`: with several exemplars `exemplarMap` must say which one goes where");
     const std::vector<WantedVariant> wanted =
         wantedVariants(options.exemplarMap.get(), options.rotationMap.get(), options.scaleMap.get(),
                        exemplars, frameOf(plan, like), ctx);
@@ -127,8 +124,6 @@ void driftWhereTurned(SynthPlan& plan, const Held& held, const RunContext& ctx) 
 void gatherGuides(const SynthOptions& options, const LevelSets& exemplars, SynthPlan& plan, Held& held,
                   const RunContext& ctx) {
     if (!options.guide) return;
-    requireOption(options.exemplarGuides.size() == exemplars.size(), "exemplarGuides",
-                  std::to_string(options.exemplarGuides.size()), "one for each exemplar");
     held.guide = sampledScalar(*options.guide, frameOf(plan, *exemplars.front()->grid), "`guide`", ctx);
     std::vector<BrickField> guides;
     for (std::size_t e = 0; e < exemplars.size(); ++e) {
@@ -183,17 +178,45 @@ SynthResult synthesized(const LevelSets& exemplars, const SynthOptions& options,
 
 }  // namespace
 
-SynthResult synthesize(const LevelSets& exemplars, const SynthOptions& options, const RunContext& ctx) {
+void validate(const SynthOptions& options, const LevelSets& exemplars) {
     if (exemplars.empty()) throw Error(ErrorCode::InvalidOption, "synthesis needs at least one exemplar");
     requireOption(!options.exemplarMap || exemplars.size() > 1, "exemplarMap", "for one exemplar",
                   "several exemplars, of which it says which goes where");
     requireOption(bool(options.guide) == !options.exemplarGuides.empty(), "guide", "alone",
                   "both `guide` and `exemplarGuides`");
     requireOption(options.longestRun >= 0.01 && options.longestRun <= 1, "longestRun",
-                  std::to_string(options.longestRun), "from 0.01 to 1");
+                  roundedText(options.longestRun, 6), "from 0.01 to 1");
     requireOption(options.guideWeight >= 0.001 && options.guideWeight <= 1000, "guideWeight",
-                  std::to_string(options.guideWeight), "from 0.001 to 1000");
-    return withThreads(ctx, [&] { return synthesized(exemplars, options, ctx); });
+                  roundedText(options.guideWeight, 6), "from 0.001 to 1000");
+    requireOption(options.block == 0 || (options.block >= 4 && options.block <= 256), "block",
+                  std::to_string(options.block), "a whole number from 4 to 256");
+    requireOption(options.levels >= 0 && options.levels <= 8, "levels", std::to_string(options.levels),
+                  "a whole number from 1 to 8");
+    requireOption(options.drift >= 0 && options.drift <= 1 << 20, "drift", std::to_string(options.drift),
+                  "from 0 to 1048576 voxels");
+    requireHalfWidth(double(options.halfWidth));
+    requireOption(options.exemplarGuides.empty() || options.exemplarGuides.size() == exemplars.size(),
+                  "exemplarGuides", std::to_string(options.exemplarGuides.size()), "one for each exemplar");
+    for (const GridConstPtr& guide : options.exemplarGuides)
+        requireOption(guide != nullptr, "exemplarGuides", "null", "a grid for each exemplar");
+    if (exemplars.size() > 1 && !options.exemplarMap && (options.rotationMap || options.scaleMap))
+        throw Error(
+            ErrorCode::InvalidOption,
+            "`rotationMap`, `scaleMap`: with several exemplars `exemplarMap` must say which one goes where");
+    for (std::size_t e = 0; e < exemplars.size(); ++e)
+        requireModel(exemplars[e],
+                     exemplars.size() > 1 ? "exemplar " + std::to_string(e + 1) : "the exemplar");
+    if (options.exemplarBox) requireBox(*options.exemplarBox, "exemplarBox");
+    if (!options.exemplarMask) return;
+    requireMaskFor(*options.exemplarMask, *exemplars.front()->grid);
+    activeBox(*options.exemplarMask);
+}
+
+SynthResult synthesize(const LevelSets& exemplars, const SynthOptions& options, const RunContext& ctx) {
+    return withThreads(ctx, [&] {
+        validate(options, exemplars);
+        return synthesized(exemplars, options, ctx);
+    });
 }
 
 SynthResult synthesize(const LevelSet& exemplar, const SynthOptions& options, const RunContext& ctx) {

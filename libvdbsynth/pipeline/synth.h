@@ -36,6 +36,12 @@ struct SynthOptions {
     CarriedValues carried = CarriedValues::Copied;
 };
 
+/// @throw Error InvalidOption (a field out of its range, fields that contradict each other, null exemplars or
+/// guides), ShapeMismatch (a mask in other voxels than the exemplar's), EmptyInput (an empty mask), and what
+/// requireModel (vdb/level_set.h) throws. The rest of synthesize's checks need sizes of domains and blocks;
+/// they too come before any work.
+void validate(const SynthOptions& options, const std::vector<const LevelSet*>& exemplars);
+
 struct SynthResult {
     LevelSet model;
     SourceMap map;

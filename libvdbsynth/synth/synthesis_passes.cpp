@@ -181,6 +181,10 @@ void validate(const BlockSynthesisOptions& options, const std::vector<Index3>& e
                   "a whole number from 1 to 8");
     requireOption(options.drift >= 0 && options.drift <= 1 << 20, "drift", std::to_string(options.drift),
                   "from 0 to 1048576 voxels");
+    for (int axis = 0; axis < 3; ++axis)
+        requireOption(options.around[axis] >= 0 && options.around[axis] < (options.size[axis] + 1) / 2,
+                      "around", std::to_string(options.around[axis]),
+                      "at least 0 and under half of the target");
     requireOption(options.longestRun >= 0.01 && options.longestRun <= 1, "longestRun",
                   roundedText(options.longestRun, 6), "from 0.01 to 1");
     requireOption(options.guideWeight >= 0.001f && options.guideWeight <= 1000, "guideWeight",

@@ -27,6 +27,84 @@ std::vector<const Leaf*> leavesOf(const openvdb::FloatGrid& grid) {
 
 }  // namespace
 
+namespace {
+
+constexpr int kFarthest = 1 << 28;  // so that sums and differences of indices are whole numbers too
+
+bool isNear(const IndexBox& box) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (box.min[axis] < -kFarthest || box.max[axis] > kFarthest) return false;
+    return true;
+}
+
+// Rotation, mirror and uniform scale keep distances; anything else does not.
+bool hasCubicVoxels(const openvdb::FloatGrid& grid) {
+    if (!grid.transform().isLinear()) return false;
+    const openvdb::Mat3d linear = grid.transform().baseMap()->getAffineMap()->getMat4().getMat3();
+    const openvdb::Mat3d product = linear * linear.transpose();
+    const double s = product(0, 0);
+    if (!(s > 0 && std::isfinite(s))) return false;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            if (!(std::abs(product(i, j) - (i == j ? s : 0)) <= 1e-6 * s)) return false;
+    return true;
+}
+
+bool hasFiniteValues(const openvdb::FloatGrid& grid, const RunContext& ctx) {
+    const std::vector<const Leaf*> leaves = leavesOf(grid);
+    std::vector<char> finite((leaves.size() + 255) / 256, 1);
+    parallelFor(ctx, leaves.size(), 256, [&](std::size_t begin, std::size_t end) {
+        bool fine = true;
+        for (std::size_t i = begin; i < end; ++i)
+            for (openvdb::Index n = 0; n < Leaf::SIZE; ++n)
+                fine = fine && std::isfinite(leaves[i]->getValue(n));
+        finite[begin / 256] = fine;
+    });
+    openvdb::FloatTree::ValueAllCIter tile = grid.tree().cbeginValueAll();
+    tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
+    bool fine = std::isfinite(grid.background());
+    for (; tile; ++tile) fine = fine && std::isfinite(*tile);
+    return fine && std::find(finite.begin(), finite.end(), 0) == finite.end();
+}
+
+}  // namespace
+
+void requireModel(const LevelSet* model, const std::string& what, const RunContext& ctx) {
+    if (!model || !model->grid)
+        throw Error(ErrorCode::InvalidOption,
+                    what + (model ? ": its `grid`" : "") + " is null; a level set is needed");
+    for (const GridPtr& carried : model->carried)
+        if (!carried) throw Error(ErrorCode::InvalidOption, what + ": one of its `carried` grids is null");
+    const openvdb::FloatGrid& grid = *model->grid;
+    if (grid.getGridClass() == openvdb::GRID_FOG_VOLUME || !(grid.background() > 0))
+        throw Error(ErrorCode::Unusable, what +
+                                             ": is no level set, which is negative inside and positive "
+                                             "outside; make one of it with modelFromGrids");
+    if (!hasCubicVoxels(grid))
+        throw Error(ErrorCode::Unusable,
+                    what + ": its voxels are no cubes; resample it, as modelFromGrids does");
+    const double halfWidth = halfWidthOf(grid);
+    if (!(halfWidth >= 1.4999))
+        throw Error(ErrorCode::Unusable, what + ": its band of " + roundedText(halfWidth, 4) +
+                                             " voxels a side is under 1.5; rebuild it with a wider one");
+    if (grid.activeVoxelCount() == 0) throw Error(ErrorCode::EmptyInput, what + ": has no active voxels");
+    if (!hasFiniteValues(grid, ctx)) throw Error(ErrorCode::BadData, what + ": holds NaN or infinite values");
+    if (model->domain.empty() || !isNear(model->domain))
+        throw Error(ErrorCode::InvalidOption, what + ": its `domain` " + boxText(model->domain) +
+                                                  (model->domain.empty() ? " is empty" : " is too far away") +
+                                                  "; solidBox says where the solid is");
+}
+
+void requireBox(const IndexBox& box, const std::string& field) {
+    requireOption(!box.empty() && isNear(box), field, boxText(box),
+                  "i,j,k,I,J,K with every minimum at most its maximum, within 268435456 voxels of 0");
+}
+
+void requireHalfWidth(double halfWidth, const std::string& field) {
+    requireOption(halfWidth >= 1.5 && halfWidth <= 100, field, roundedText(halfWidth, 6),
+                  "from 1.5 to 100 voxels");
+}
+
 std::string boxText(const IndexBox& box) {
     std::string text;
     for (const Index3& corner : {box.min, box.max})

@@ -27,6 +27,19 @@ inline constexpr const char* kSurfaceName = "surface";
 inline constexpr const char* kDomainKey =
     "vdbsynth:domain";  ///< metadata `i,j,k,I,J,K`, both corners inclusive
 
+/// What every function that takes a model demands of it, null or not: a level set (no fog volume) of cubic
+/// voxels, finite values and a band of at least 1.5 voxels a side, and a domain that is not empty and lies
+/// within 2^28 voxels of the origin. modelFromGrids (vdb_file.h) makes one of any grid.
+/// @param what  begins the message, for example "the exemplar"
+/// @throw Error InvalidOption (null model or grid, bad domain), Unusable (another kind of grid, voxels that
+/// are no cubes, a band too narrow), EmptyInput (no active voxels), BadData (NaN or infinite values)
+/// @par Cost  one look at every value
+void requireModel(const LevelSet* model, const std::string& what, const RunContext& ctx = {});
+/// @param field  names the options' field @throw Error InvalidOption (empty, or beyond 2^28)
+void requireBox(const IndexBox& box, const std::string& field);
+/// @param field  names the options' field @throw Error InvalidOption (not from 1.5 to 100 voxels)
+void requireHalfWidth(double halfWidth, const std::string& field = "halfWidth");
+
 std::string boxText(const IndexBox& box);
 /// Parses `i,j,k,I,J,K`. @return false if it is not just six whole numbers within 2^28, min <= max
 bool parseBox(const std::string& text, IndexBox& box);

@@ -1,4 +1,5 @@
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/mesh_conversion.h"
 #include "libvdbsynth/vdb/zero_level.h"
@@ -29,12 +30,16 @@ Mesh inIndexSpace(const openvdb::FloatGrid& grid, Mesh mesh) {
 
 }  // namespace
 
-Mesh levelSetToMesh(const openvdb::FloatGrid& grid, const MeshingOptions& options, const RunContext& ctx) {
+void validate(const MeshingOptions& options) {
     requireOption(options.adaptivity >= 0 && options.adaptivity <= 1, "adaptivity",
-                  std::to_string(options.adaptivity), "from 0 to 1");
-    Stage stage(ctx, "level set to mesh", 2);
+                  roundedText(options.adaptivity, 6), "from 0 to 1");
     if (options.sharp && options.adaptivity > 0)
         throw Error(ErrorCode::InvalidOption, "`sharp` and `adaptivity`: give one of them");
+}
+
+Mesh levelSetToMesh(const openvdb::FloatGrid& grid, const MeshingOptions& options, const RunContext& ctx) {
+    validate(options);
+    Stage stage(ctx, "level set to mesh", 2);
     Mesh mesh;
     if (options.sharp) {
         std::optional<Mesh> source;

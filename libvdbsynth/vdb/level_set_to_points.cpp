@@ -1,6 +1,7 @@
 // Poisson-disk points by dart throwing over candidates on the dual-contoured surface: candidates in a
 // random order, each kept if no kept one is nearer than the spacing.
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/random.h"
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/mesh_conversion.h"
@@ -84,10 +85,14 @@ private:
 
 }  // namespace
 
+void validate(const PointOptions& options) {
+    requireOption(options.spacing >= 0.25 && options.spacing <= 100, "spacing",
+                  roundedText(options.spacing, 6), "from 0.25 to 100 voxels");
+}
+
 PointCloud levelSetToPoints(const openvdb::FloatGrid& grid, const PointOptions& options,
                             const RunContext& ctx) {
-    requireOption(options.spacing >= 0.25 && options.spacing <= 100, "spacing",
-                  std::to_string(options.spacing), "from 0.25 to 100 voxels");
+    validate(options);
     Stage stage(ctx, "level set to points", 3);
     const Mesh mesh = zeroLevelInIndexSpace(grid, 0, ctx);
     if (mesh.faceCount() == 0)

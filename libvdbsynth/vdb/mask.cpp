@@ -19,6 +19,11 @@ openvdb::BoolGrid::Ptr emptyMask(const openvdb::math::Transform::Ptr& transform)
     return mask;
 }
 
+void requireVoxelSize(double voxelSize) {
+    requireOption(voxelSize > 0 && voxelSize < 1e30, "voxelSize", roundedText(voxelSize, 6),
+                  "above 0 (world)");
+}
+
 template <typename Grid>
 bool gatherActive(const openvdb::GridBase& base, const IndexBox& box, BrickField& field,
                   const RunContext& ctx) {
@@ -37,13 +42,17 @@ bool gatherActive(const openvdb::GridBase& base, const IndexBox& box, BrickField
 
 }  // namespace
 
-BrickField gatherMask(const openvdb::GridBase& grid, const IndexBox& box, const openvdb::FloatGrid& like,
-                      const RunContext& ctx) {
+void requireMaskFor(const openvdb::GridBase& grid, const openvdb::FloatGrid& like) {
     if (!(grid.transform() == like.transform()))
         throw Error(ErrorCode::ShapeMismatch,
                     "mask \"" + grid.getName() + "\": its voxels (size " +
                         std::to_string(grid.voxelSize()[0]) + ") are not those of the model (size " +
                         std::to_string(like.voxelSize()[0]) + "); make it with the same `voxelSize`");
+}
+
+BrickField gatherMask(const openvdb::GridBase& grid, const IndexBox& box, const openvdb::FloatGrid& like,
+                      const RunContext& ctx) {
+    requireMaskFor(grid, like);
     BrickField field;
     if (gatherActive<openvdb::BoolGrid>(grid, box, field, ctx) ||
         gatherActive<openvdb::FloatGrid>(grid, box, field, ctx) ||
@@ -61,13 +70,17 @@ IndexBox activeBox(const openvdb::GridBase& grid) {
 }
 
 GridPtr boxMask(const IndexBox& box, double voxelSize) {
+    requireBox(box, "box");
+    requireVoxelSize(voxelSize);
     auto mask = emptyMask(openvdb::math::Transform::createLinearTransform(voxelSize));
     mask->fill(toBBox(box), true, true);
     return mask;
 }
 
 GridPtr ballMask(const Vec3d& centre, double radius, double voxelSize) {
-    requireOption(radius > 0 && std::isfinite(radius), "radius", std::to_string(radius), "above 0 (world)");
+    requireVoxelSize(voxelSize);
+    requireOption(radius > 0 && radius < 1e4 * voxelSize, "radius", roundedText(radius, 6),
+                  "above 0 (world) and under ten thousand voxels");
     auto mask = emptyMask(openvdb::math::Transform::createLinearTransform(voxelSize));
     auto accessor = mask->getAccessor();
     const Vec3d c = centre * (1 / voxelSize);

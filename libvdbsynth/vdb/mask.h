@@ -14,6 +14,9 @@ namespace vdbsynth {
 BrickField gatherMask(const openvdb::GridBase& grid, const IndexBox& box, const openvdb::FloatGrid& like,
                       const RunContext& ctx = {});
 
+/// @throw Error ShapeMismatch unless the mask has the transform of the model that it is for
+void requireMaskFor(const openvdb::GridBase& mask, const openvdb::FloatGrid& like);
+
 /// Box of a grid's active voxels. @throw Error EmptyInput (none)
 IndexBox activeBox(const openvdb::GridBase& grid);
 

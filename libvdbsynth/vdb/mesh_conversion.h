@@ -35,6 +35,9 @@ struct SolidOptions {
     bool exact = false;
 };
 
+/// @throw Error InvalidOption (a shell without a thickness)
+void validate(const SolidOptions& options);
+
 /// A level set of any mesh. One that bounds a solid, perhaps after vertices on one place were welded and
 /// faces turned to agree, goes to meshToLevelSet. Any other (open, with edges of three faces, of one-sided
 /// parts) gets its sign from the generalised winding number, closed smoothly across its openings, with a
@@ -72,6 +75,9 @@ struct MeshingOptions {
     const Mesh* source = nullptr;  ///< [world] for sharp: the mesh that the level set was made from
 };
 
+/// @throw Error InvalidOption (a field out of its range, both `sharp` and `adaptivity`)
+void validate(const MeshingOptions& options);
+
 /// The zero level as a closed manifold mesh with outward faces, by one of two ways: sharp, see zero_level.h;
 /// else OpenVDB's dual contouring, then two Newton steps that put each vertex on the trilinear zero level
 /// (OpenVDB's own lie up to a tenth of a voxel inside curved surfaces), then sheets that touch are separated
@@ -101,6 +107,9 @@ Attributes gridsToAttributes(const std::vector<GridPtr>& grids, const std::vecto
 struct PointOptions {
     double spacing = 1.0;  ///< [voxels], least distance between two points, 0.25..100
 };
+
+/// @throw Error InvalidOption (a field out of its range)
+void validate(const PointOptions& options);
 
 /// Evenly spaced points on the zero level (Poisson-disk by darts in a random order drawn from ctx.seed),
 /// with the outward unit normals of the field.

@@ -2,6 +2,7 @@
 #include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/wall.h"
 
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 
 #include <openvdb/openvdb.h>
@@ -211,12 +212,16 @@ bool hasGaps(const openvdb::FloatGrid& grid, const RunContext& ctx) {
 
 }  // namespace
 
+void validate(const SolidOptions& options) {
+    requireOption(options.open != OpenMesh::Shell || (options.thickness > 0 && options.thickness < 1e30),
+                  "thickness", roundedText(options.thickness, 6), "above 0 (world)");
+}
+
 FloatGridPtr meshToSolid(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
                          const SolidOptions& options, const RunContext& ctx) {
     checkOptions(voxelSize, halfWidth);
+    validate(options);
     const bool shell = options.open == OpenMesh::Shell;
-    requireOption(!shell || (std::isfinite(options.thickness) && options.thickness > 0), "thickness",
-                  std::to_string(options.thickness), "above 0 (world)");
     requireOption(!shell || options.thickness >= voxelSize, "thickness", std::to_string(options.thickness),
                   "at least a voxel, which is " + std::to_string(voxelSize));
     if (!shell && boundsSolid(mesh)) {

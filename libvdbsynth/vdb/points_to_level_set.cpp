@@ -140,6 +140,7 @@ FloatGridPtr pointsToSolid(const PointCloud& cloud, double voxelSize, double hal
                   "above 0");
     requireOption(halfWidth >= 1.5 && halfWidth <= 1000, "halfWidth", std::to_string(halfWidth),
                   "from 1.5 to 1000 voxels");
+    validate(options);
     const bool shell = options.open == OpenMesh::Shell;
     requireOption(!shell || (std::isfinite(options.thickness) && options.thickness >= voxelSize), "thickness",
                   std::to_string(options.thickness),

@@ -206,11 +206,29 @@ void requireSize(int width, int height) {
 
 }  // namespace
 
-Picture renderPreview(const openvdb::FloatGrid& grid, const PreviewOptions& options, const RunContext& ctx) {
+void validate(const PreviewOptions& options) {
     requireSize(options.width, options.height);
-    requireOption(length(options.view) > 0, "view", "0,0,0", "a direction");
+    const double squared = dot(options.view, options.view);
+    requireOption(squared > 0 && std::isfinite(squared), "view",
+                  roundedText(options.view.x, 6) + "," + roundedText(options.view.y, 6) + "," +
+                      roundedText(options.view.z, 6),
+                  "a direction");
     requireOption(options.samples >= 1 && options.samples <= 64, "samples", std::to_string(options.samples),
                   "from 1 to 64");
+    vectorsOf(options.directions);
+}
+
+void validate(const SliceOptions& options, const IndexBox& box) {
+    requireSize(options.width, options.height);
+    requireOption(options.axis >= 0 && options.axis <= 2, "axis", std::to_string(options.axis),
+                  "0, 1 or 2 for x, y or z");
+    requireOption(options.fraction >= 0 && options.fraction <= 1, "fraction",
+                  roundedText(options.fraction, 6), "from 0 to 1");
+    requireBox(box, "box");
+}
+
+Picture renderPreview(const openvdb::FloatGrid& grid, const PreviewOptions& options, const RunContext& ctx) {
+    validate(options);
     const openvdb::Vec3SGrid* directions = vectorsOf(options.directions);
     const IndexBox box = solidBox(grid, "the model");
     // The corners of the solid's box in world space; a rotated grid gives the box around them.
@@ -272,11 +290,7 @@ Picture renderPreview(const openvdb::FloatGrid& grid, const PreviewOptions& opti
 
 Picture renderSlice(const openvdb::FloatGrid& grid, const IndexBox& box, const SliceOptions& options,
                     const RunContext& ctx) {
-    requireSize(options.width, options.height);
-    requireOption(options.axis >= 0 && options.axis <= 2, "axis", std::to_string(options.axis),
-                  "0, 1 or 2 for x, y or z");
-    requireOption(options.fraction >= 0 && options.fraction <= 1, "fraction",
-                  roundedText(options.fraction, 6), "from 0 to 1");
+    validate(options, box);
     const int axis = options.axis, across = axis == 0 ? 1 : 0, up = axis == 2 ? 1 : 2;
     const double slice = box.min[axis] + options.fraction * (box.max[axis] - box.min[axis]);
     const double scale =

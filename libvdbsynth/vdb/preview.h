@@ -14,6 +14,9 @@ struct PreviewOptions {
     int samples = 4;  ///< rays a pixel at edges (elsewhere one), 1..64
 };
 
+/// @throw Error InvalidOption (a field out of its range), BadData (directions that are no vectors of floats)
+void validate(const PreviewOptions& options);
+
 /// A shaded picture of a level set: perspective camera that sees the whole solid, one key light with
 /// shadow, sky and ground light, edges refined with `samples` rays a pixel. Directions are drawn by line
 /// integral convolution [cabral1993]: noise, a number a voxel, averaged along twelve voxels of the field.
@@ -27,6 +30,9 @@ struct SliceOptions {
     int axis = 2;                   ///< 0, 1, 2: normal of the slice
     double fraction = 0.5;          ///< where in `box` along the axis, 0..1
 };
+
+/// @throw Error InvalidOption (a field out of its range, an empty box)
+void validate(const SliceOptions& options, const IndexBox& box);
 
 /// A slice through a level set over `box`: inside warm, outside cool, contour lines every voxel of
 /// distance, the zero level black.

@@ -162,11 +162,7 @@ public:
         } else {
             readBlocks();
         }
-        try {
-            requireSound(mMap);
-        } catch (const Error& error) {
-            throw Error(error.code(), mPath + ": " + error.what());
-        }
+        requireSound(mMap, mPath + ": its source map");
         return std::move(mMap);
     }
 

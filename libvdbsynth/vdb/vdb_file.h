@@ -43,12 +43,15 @@ struct VdbReadOptions {
     std::optional<double> iso;  ///< a fog volume is solid where its value is above this
 };
 
+/// @throw Error InvalidOption (an iso that is no number)
+void validate(const VdbReadOptions& options);
+
 /// Reads a model from a VDB file made by anyone: level sets as they are (a half-precision file as floats,
 /// an anisotropic or sheared transform resampled to its smallest voxel), fog volumes by `iso`.
 /// A recorded domain is kept; else the domain is the box of the solid.
 /// @throw Error  Io (missing, a directory, not readable), BadData (not a VDB file, truncated, corrupt, NaN,
-///               no usable grid, frustum transform), InvalidOption (no grid of that name), Unusable (a fog
-///               volume without iso), EmptyInput (no surface)
+///               no usable grid, frustum transform), InvalidOption (an iso that is no number, null grids),
+///               Unusable (a fog volume without iso), EmptyInput (no surface)
 /// @par Repeats  same bits for any number of threads
 LevelSet readVdbModel(const std::string& path, const VdbReadOptions& options = {},
                       const RunContext& ctx = {});

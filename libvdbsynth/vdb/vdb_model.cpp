@@ -1,5 +1,6 @@
 // Which grid of a VDB file is the model, and what makes a level set of it.
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/redistance.h"
@@ -119,6 +120,11 @@ openvdb::FloatGrid::Ptr fogToLevelSet(const std::string& path, const openvdb::Fl
 
 }  // namespace
 
+void validate(const VdbReadOptions& options) {
+    requireOption(!options.iso || std::isfinite(*options.iso), "iso",
+                  options.iso ? exactText(*options.iso) : "", "a number");
+}
+
 GridPtr pickedGrid(const std::string& path, const std::vector<GridPtr>& grids,
                    const VdbReadOptions& options) {
     return pickGrid(path, grids, options);
@@ -138,6 +144,9 @@ LevelSet readVdbModel(const std::string& path, const VdbReadOptions& options, co
 
 LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& grids,
                         const VdbReadOptions& options, const RunContext& ctx) {
+    validate(options);
+    for (const GridPtr& grid : grids)
+        if (!grid) throw Error(ErrorCode::InvalidOption, path + ": one of the `grids` is null");
     const openvdb::FloatGrid::Ptr given = asFloat(pickGrid(path, grids, options));
     refuseUnusable(path, *given);
     // A name, metadata and a transform of its own; the tree is the caller's and stays as it is.
@@ -183,6 +192,9 @@ LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& gri
 }
 
 LevelSet resampled(const LevelSet& model, double voxelSize, const RunContext& ctx) {
+    requireModel(&model, "the model", ctx);
+    requireOption(voxelSize > 0 && voxelSize < 1e30, "voxelSize", roundedText(voxelSize, 6),
+                  "above 0 (world)");
     const double ratio = voxelSizeOf(*model.grid) / voxelSize;
     requireMemory(ctx, double(model.grid->activeVoxelCount()) * ratio * ratio * 40,
                   "voxels of " + std::to_string(voxelSize), "use larger ones");

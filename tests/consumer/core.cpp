@@ -1,25 +1,44 @@
-// Searches a small field for one of its own blocks, without OpenVDB.
+// Finds a block of a field in the field again, by libvdbsynth alone: no OpenVDB.
 #include <cstdio>
 #include <memory>
 #include <vector>
 
 #include "libvdbsynth/search/block_index.h"
 
+namespace {
+
+using namespace vdbsynth;
+
+constexpr int kSide = 24, kBlock = 8;
+
+std::shared_ptr<const BrickField> plainField() {
+    // Bricks are 8^3 samples, x slowest, z fastest, and made on all threads.
+    const auto fill = [](const IndexBox& brick, float* samples) {
+        for (int x = brick.min.x; x <= brick.max.x; ++x)
+            for (int y = brick.min.y; y <= brick.max.y; ++y)
+                for (int z = brick.min.z; z <= brick.max.z; ++z)
+                    *samples++ = float((x * x * 31 + y * 7 * z + z) % 13);
+    };
+    return std::make_shared<const BrickField>(
+        BrickField::generate(IndexBox::fromSize({kSide, kSide, kSide}), {}, fill));
+}
+
+}  // namespace
+
 int main() {
-    using namespace vdbsynth;
-    const auto field = std::make_shared<const BrickField>(
-        BrickField::generate(IndexBox::fromSize({24, 24, 24}), {}, [](const IndexBox& brick, float* samples) {
-            for (int i = 0; i < BrickField::kSamples; ++i)
-                samples[i] = float((brick.min.x * 31 + brick.min.y * 7 + brick.min.z + i * i) % 13);
-        }));
+    const std::shared_ptr<const BrickField> field = plainField();
     BlockIndexOptions options;
-    options.block = 8;
+    options.block = kBlock;
     const BlockIndex index = BlockIndex::build(field, options);
-    std::vector<float> samples(512);
-    field->readBox({5, 6, 7}, {8, 8, 8}, samples.data());
+
+    const Index3 corner{5, 6, 7};
+    std::vector<float> samples(kBlock * kBlock * kBlock);
+    field->readBox(corner, {kBlock, kBlock, kBlock}, samples.data());
     BlockQuery query;
     query.samples = samples.data();
-    const BlockMatch match = index.match(query).front();
-    std::printf("found at %d %d %d\n", match.position.x, match.position.y, match.position.z);
-    return match.cost == 0 ? 0 : 1;
+    const std::vector<BlockMatch> best = index.match(query, 3);
+    for (const BlockMatch& match : best)
+        std::printf("%d %d %d at a cost of %g\n", match.position.x, match.position.y, match.position.z,
+                    match.cost);
+    return best.front().position == corner && best.front().cost == 0 ? 0 : 1;
 }

@@ -263,6 +263,7 @@ TEST_CASE("repeatMap: every refusal says what to do", "[pipeline][error][cancel]
     CHECK(halfWidthOf(*repeatMap(result.map, {&exemplar}, options).grid) == Approx(4));
     LevelSet elsewhere = exemplar;
     elsewhere.grid = openvdb::FloatGrid::create(3.f);
+    elsewhere.grid->setGridClass(openvdb::GRID_LEVEL_SET);
     elsewhere.grid->tree().setValueOn({500, 500, 500}, -1.f);
     CHECK(test::contains(thrown({&elsewhere}).message, "no surface in the map's box"));
     RunContext small, stopped;

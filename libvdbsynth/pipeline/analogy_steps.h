@@ -1,4 +1,5 @@
 #pragma once
+#include "libvdbsynth/analogy/volume_analogy.h"
 #include "libvdbsynth/pipeline/analogy.h"
 #include "libvdbsynth/vdb/redistance.h"
 

@@ -1,4 +1,9 @@
 #pragma once
+#include "libvdbsynth/measure/novelty.h"
+#include "libvdbsynth/measure/patch_distribution.h"
+#include "libvdbsynth/measure/statistics.h"
+#include "libvdbsynth/measure/surface_distance.h"
+#include "libvdbsynth/measure/verdict.h"
 #include "libvdbsynth/pipeline/compare.h"
 
 #include <string>

@@ -1,3 +1,4 @@
+#include "libvdbsynth/analogy/filter_analogy.h"
 #include "libvdbsynth/pipeline/filter_analogy.h"
 
 #include "libvdbsynth/base/error.h"

@@ -1,3 +1,4 @@
+#include "libvdbsynth/grid/raster_field.h"
 #include "libvdbsynth/pipeline/outputs.h"
 
 #include "libvdbsynth/base/error.h"

@@ -1,5 +1,7 @@
 #pragma once
+#include "libvdbsynth/pipeline/carry.h"
 #include "libvdbsynth/pipeline/synth.h"
+#include "libvdbsynth/synth/block_synthesis.h"
 
 #include <memory>
 #include <vector>

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "libvdbsynth/grid/dense_field.h"
 #include "tests/support/makers.h"
 
 using namespace vdbsynth;

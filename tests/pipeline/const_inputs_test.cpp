@@ -149,7 +149,7 @@ TEST_CASE("matchModel, cropModel, withHalfWidth, compareModels, writeModel: inpu
     withHalfWidth(model, 5);
     resampled(model, 1.5);
     CHECK(watch.changed().empty());
-    compareModels({"a", model, nullptr, nullptr}, {{"b", model, nullptr, nullptr}});
+    compareModels({"a", model, {}}, {{"b", model, {}}});
     CHECK(watch.changed().empty());
     const test::TemporaryFolder folder;
     OutputSet outputs;

@@ -333,15 +333,12 @@ TEST_CASE("FilterAnalogyOptions, CompareOptions, MakeOptions: fields out of thei
                          makeFilteredGrid({{fog, fog}}, model.grid, {});
                      }});
     using C = CompareOptions;
-    const CompareInput input{"a", model, nullptr, nullptr};
+    const CompareInput input{"a", model, {}};
     const auto compare = [&](const C& options) { compareModels(input, {}, options); };
     for (int value : {0, 1, 101}) cases.push_back(with("`fresh`", &C::fresh, value, compare));
     ExemplarOptions process;
     process.kind = "clouds";
     cases.push_back(with("clouds", &C::process, std::optional<ExemplarOptions>(process), compare));
-    cases.push_back({"source map", ErrorCode::BadData, [&] {
-                         compareModels({"a", model, fog, nullptr}, {});
-                     }});
     using M = MakeOptions;
     const auto make = [](const M& options) { makeModel(options); };
     const auto pair = [](const M& options) { makePair(options); };

@@ -3,6 +3,8 @@
 #include "tools/vdb_synth/compare_report.h"
 
 #include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/measure/patch_distribution.h"
+#include "libvdbsynth/measure/verdict.h"
 
 #include <algorithm>
 #include <cmath>

@@ -128,7 +128,7 @@ class Moved(CliTest):
         self.ok("mask", "box", "-o", "all.vdb", "--box", "-9,-9,-9,63,63,63", **place)
         self.ok("crop", "a.vdb", "-o", "hole.vdb", "--box", "10,10,10,19,19,19", **place)
         self.ok("make", "grooves", "p.vdb", "p2.vdb", "--resolution", 48, **place)
-        self.ok("make", "three-tori", "t.vdb", "--resolution", 48, **place)
+        self.ok("make", "three-tori", "t.vdb", "--resolution", 32, **place)
 
     def both(self, *words, output="o.vdb"):
         """Runs in the folder with plain names, and from another folder with absolute paths; `@` marks a path."""

@@ -35,7 +35,6 @@ void writePage(Run& run, const Comparison& comparison, const std::vector<const L
 
 void compare(Run& run) {
     run.requireInputs(2, 65);
-    if (run.arguments.has("output")) run.outputPath();
     CompareOptions options;
     if (run.arguments.has("stationary")) options.stationary = run.arguments.axes("stationary");
     if (run.arguments.has("process")) readProcess(run.arguments.text("process"), options.process.emplace());

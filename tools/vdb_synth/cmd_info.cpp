@@ -159,7 +159,6 @@ void info(Run& run) {
     run.requireInputs(1, 1);
     const std::string path = run.arguments.inputs[0];
     requireModelPath(path);
-    if (run.arguments.has("output")) run.outputPath();
     run.reserveOutputs();
     const Json json = isPointPath(path) || holdsPoints(path) ? pointsInfo(path, run)
                       : isMeshPath(path)                     ? meshInfo(path, run)

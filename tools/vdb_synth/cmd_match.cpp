@@ -25,7 +25,6 @@ std::string checked(const MatchOptions& options, const MatchResult& result) {
 
 void match(Run& run) {
     run.requireInputs(2, 2);
-    if (run.arguments.has("output")) run.outputPath();
     MatchOptions options;
     options.block = run.arguments.whole("block");
     options.count = run.arguments.whole("count");

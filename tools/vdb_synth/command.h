@@ -32,7 +32,7 @@ public:
 
     /// Paths given with -o, at least one. @throw Error InvalidOption
     std::vector<std::string> outputPaths() const;
-    /// The only path given with -o. @throw Error InvalidOption
+    /// The path given with -o, of commands that write one file. @throw Error InvalidOption (none)
     std::string outputPath() const;
     /// @throw Error InvalidOption unless low <= number of inputs <= high
     void requireInputs(std::size_t low, std::size_t high) const;

@@ -112,10 +112,7 @@ std::vector<std::string> Run::outputPaths() const {
 }
 
 std::string Run::outputPath() const {
-    const std::vector<std::string> paths = outputPaths();
-    if (paths.size() > 1)
-        throw Error(ErrorCode::InvalidOption, "--output: " + mImpl->command.name + " writes one file");
-    return paths.front();
+    return outputPaths().front();
 }
 
 void Run::requireInputs(std::size_t low, std::size_t high) const {

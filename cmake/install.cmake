@@ -1,4 +1,4 @@
-# Installs the tool, the library, its headers and a package that find_package(vdbsynth) finds. The component
+# Installs the tool, the library, its public headers and a package that find_package(vdbsynth) finds. The component
 # `pipeline` adds the rooms that speak OpenVDB and finds it.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -8,7 +8,11 @@ install(TARGETS vdbsynth EXPORT vdbsynthTargets ARCHIVE DESTINATION ${CMAKE_INST
 install(TARGETS vdbsynth_pipeline EXPORT vdbsynthPipelineTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT vdbsynthTargets NAMESPACE vdbsynth:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/vdbsynth)
 install(EXPORT vdbsynthPipelineTargets NAMESPACE vdbsynth:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/vdbsynth)
-install(DIRECTORY libvdbsynth/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/libvdbsynth FILES_MATCHING PATTERN "*.h")
+include(libvdbsynth/public_headers.cmake)
+foreach(header ${VDBSYNTH_PUBLIC_HEADERS})
+  cmake_path(GET header PARENT_PATH room)
+  install(FILES libvdbsynth/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/libvdbsynth/${room})
+endforeach()
 configure_package_config_file(cmake/vdbsynthConfig.cmake.in ${PROJECT_BINARY_DIR}/vdbsynthConfig.cmake
                               INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/vdbsynth)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/vdbsynthConfigVersion.cmake COMPATIBILITY SameMinorVersion)

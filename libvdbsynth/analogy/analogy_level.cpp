@@ -133,6 +133,16 @@ void DepthClasses::add(float plain, float textured) {
     of = of == Kind::Unseen || of == kind ? kind : Kind::Mixed;
 }
 
+std::vector<DepthRun> DepthClasses::runs() const {
+    std::vector<DepthRun> runs;
+    for (std::size_t i = 0; i < mKind.size(); ++i) {
+        const int depth = int(i) - kDeepest;
+        const bool full = mKind[i] == Kind::Full || (mKind[i] != Kind::Empty && depth < 0);
+        if (runs.empty() || runs.back().full != full) runs.push_back({depth, full});
+    }
+    return runs;
+}
+
 void DepthClasses::finish() {
     const auto seen = [](Kind kind) { return kind != Kind::Unseen; };
     const auto first = std::find_if(mKind.begin(), mKind.end(), seen);

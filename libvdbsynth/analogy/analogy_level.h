@@ -1,5 +1,6 @@
 #pragma once
 #include "libvdbsynth/grid/voxel_table.h"
+#include "libvdbsynth/map/source_map.h"
 #include "libvdbsynth/surface/frame_field.h"
 
 #include <cstdint>
@@ -67,6 +68,8 @@ public:
     /// True where voxels at this depth have to be synthesised.
     bool open(float plain) const { return mOpen[index(plain)]; }
     bool full(float plain) const { return mKind[index(plain)] == Kind::Full; }
+    /// The same for a map, where every depth is full or empty: mixed ones are as the plain model is.
+    std::vector<DepthRun> runs() const;
 
 private:
     static constexpr int kDeepest = 512;

@@ -4,6 +4,7 @@
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/math/least_squares.h"
 #include "libvdbsynth/math/pca.h"
+#include "libvdbsynth/math/trigonometry.h"
 #include "libvdbsynth/search/feature_index.h"
 
 #include <algorithm>
@@ -35,7 +36,8 @@ std::vector<float> gaussian(int level) {
     std::vector<float> weights;
     float sum = 0;
     for (int k = -radius; k <= radius; ++k) {
-        weights.push_back(std::exp(-float(k * k) / (2 * sigmaOf(level) * sigmaOf(level))));
+        weights.push_back(
+            float(exponential(-double(k * k) / (2 * double(sigmaOf(level)) * double(sigmaOf(level))))));
         sum += weights.back();
     }
     for (float& weight : weights) weight /= sum;

@@ -1,4 +1,5 @@
 #pragma once
+#include "libvdbsynth/analogy/analogy_options.h"
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/grid/brick_field.h"
 
@@ -10,23 +11,6 @@ namespace vdbsynth {
 /// Numbers before and after something was done to them, over one box. Borrowed.
 struct FilterPair {
     const BrickField *before = nullptr, *after = nullptr;
-};
-
-struct FilterAnalogyOptions {
-    int half = 2;         ///< a voxel is worked out from the (2 half + 1)^3 around it, 1..4, and
-    int levels = 3;       ///< at each further level from 3^3 places 2^level apart, smoothed as much; 1..4
-    int components = 16;  ///< principal axes that the search for what is not linear goes along, 4..256
-};
-
-/// @throw Error InvalidOption (a field out of its range)
-void validate(const FilterAnalogyOptions& options);
-
-struct FilterAnalogyStats {
-    std::size_t rows = 0;    ///< voxels of the pairs that were learnt from
-    double change = 0;       ///< root mean square of after - before, over held-out voxels
-    double affineError = 0;  ///< the same of after - what the affine map says
-    double searchError = 0;  ///< the same with the nearest row's rest added
-    bool searched = false;   ///< the rests are used: searchError was below affineError
 };
 
 struct FilterAnalogyResult {

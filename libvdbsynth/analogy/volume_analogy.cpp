@@ -16,7 +16,7 @@
 namespace vdbsynth {
 namespace {
 
-constexpr float kFar = 6;      // [voxels] of what is not near the result's surface
+constexpr float kFar = kAnalogyFar;
 constexpr float kWave = 0.5f;  // [voxels of the level] of sweep distance
 
 // What a level leaves to the next finer one.
@@ -88,9 +88,24 @@ public:
         return result;
     }
 
+    // Of the finest level, for the map.
+    ElementSources sources() const {
+        std::vector<Source> all(mSource.size());
+        each(1024, [&](std::size_t i) {
+            const AnalogyRow& row = mTraining.row(mSource[i]);
+            const Frame& frame = mTraining.frame(row);
+            all[i].exemplar = row.pair;
+            all[i].position = cast<double>(atDepth(i, row));
+            all[i].rotation = rotationBetween(frame, mVoxels.frame[i]);
+        });
+        ElementSources result;
+        for (std::size_t i = 0; i < all.size(); ++i) result.add(mVoxels.table[i], all[i]);
+        return result;
+    }
+
 private:
     template <typename Work>
-    void each(std::size_t grain, Work&& work) {
+    void each(std::size_t grain, Work&& work) const {
         parallelFor(mContext, mVoxels.table.size(), grain, [&](std::size_t first, std::size_t last) {
             for (std::size_t i = first; i < last; ++i) work(i);
         });
@@ -308,12 +323,16 @@ private:
     // as the place is from the voxel; the source first moved to the voxel's own depth.
     float readThrough(std::size_t i, std::int32_t row, const Index3& place) const {
         const AnalogyRow& source = mTraining.row(row);
-        const Frame& frame = mTraining.frame(source);
+        return sampleTrilinear(mTraining.textured(source),
+                               atDepth(i, source) + turned(mVoxels.frame[i], mTraining.frame(source),
+                                                           middleOf(place - mVoxels.table[i])));
+    }
+
+    // A source moved along its normal to the voxel's own depth.
+    Vec3f atDepth(std::size_t i, const AnalogyRow& source) const {
         const float depth =
             std::clamp(mPlain.inside(mVoxels.table[i]) - mTraining.plainAt(source), -1.f, 1.f);
-        const Vec3f at = middleOf(mTraining.voxel(source)) + frame.n * depth +
-                         turned(mVoxels.frame[i], frame, middleOf(place - mVoxels.table[i]));
-        return sampleTrilinear(mTraining.textured(source), at);
+        return middleOf(mTraining.voxel(source)) + mTraining.frame(source).n * depth;
     }
 
     // Means of what a voxel and its neighbours say about it.
@@ -378,7 +397,7 @@ void validate(const VolumeAnalogyOptions& options) {
                       "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
     };
     whole(options.levels, 0, 6, "levels");
-    whole(options.sweeps, 0, 10, "sweeps");
+    whole(options.sweeps, 1, 10, "sweeps");
     whole(options.half, 1, 4, "half");
     whole(options.coarseHalf, 1, 3, "coarseHalf");
     whole(options.components, 4, 256, "components");
@@ -387,6 +406,18 @@ void validate(const VolumeAnalogyOptions& options) {
     requireOption(options.slack >= 0 && options.slack <= 100, "slack", roundedText(options.slack, 6),
                   "from 0 to 100");
 }
+
+namespace {
+
+bool fullAt(const std::vector<DepthRun>& depths, float plain) {
+    const int depth = int(std::lround(std::clamp(plain, -1e6f, 1e6f)));
+    bool full = depths.front().full;
+    for (const DepthRun& run : depths)
+        if (run.from <= depth) full = run.full;
+    return full;
+}
+
+}  // namespace
 
 VolumeAnalogyResult makeAnalogy(const std::vector<AnalogyPair>& pairs, const BrickField& target,
                                 const FrameField& frames, const VolumeAnalogyOptions& given,
@@ -407,13 +438,38 @@ VolumeAnalogyResult makeAnalogy(const std::vector<AnalogyPair>& pairs, const Bri
         const AnalogyTraining training(pairs, levels, l, shape, options, ctx);
         Level level(training, plain, frames, l, shape, made ? &*made : nullptr, options, ctx);
         result.levels.push_back(level.run());
-        made = level.made();
+        if (l > 0) {
+            made = level.made();
+        } else {
+            result.sources = level.sources();
+            result.depths = training.depths().runs();
+        }
     }
-    for (std::size_t i = 0; i < made->source.size(); ++i)
-        if (made->source[i].pair >= 0)
-            result.sources.push_back({made->table[i], made->sourceVoxel[i], made->source[i].pair});
-    result.distance = std::move(made->distance);
     return result;
+}
+
+BrickField readAnalogy(const ElementSources& sources, const std::vector<DepthRun>& depths,
+                       const IndexBox& mapBox, const std::vector<ExemplarSamples>& textured,
+                       const BrickField& target, int factor, const RunContext& ctx) {
+    if (depths.empty() || finerBox(mapBox, factor).size() != target.box().size())
+        throw Error(ErrorCode::ShapeMismatch, "the sources are of another target");
+    const float far = kFar * float(factor);
+    const Index3 first = finerBox(mapBox, factor).min;
+    const BrickField otherwise =
+        BrickField::generate(target.box(), ctx, [&](const IndexBox& brick, float* samples) {
+            target.readBox(brick.min, brick.size(), samples);
+            for (int i = 0; i < BrickField::kSamples; ++i) {
+                float plain = samples[i];
+                if (factor > 1) {
+                    // By the map's voxel as a whole, whose middle is at a multiple of the factor.
+                    const Index3 p = brick.min + Index3{i >> 6, (i >> 3) & 7, i & 7};
+                    const Index3 voxel = mapBox.min + Index3{p.x / factor, p.y / factor, p.z / factor};
+                    plain = target.at(voxel * factor - first) / float(factor);
+                }
+                samples[i] = fullAt(depths, plain) ? -far : far;
+            }
+        });
+    return gatherThroughSources(sources, mapBox, factor, textured, otherwise, far, ctx);
 }
 
 }  // namespace vdbsynth

@@ -1,4 +1,7 @@
 #pragma once
+#include "libvdbsynth/analogy/analogy_options.h"
+#include "libvdbsynth/map/source_gather.h"
+#include "libvdbsynth/map/source_map.h"
 #include "libvdbsynth/surface/frame_field.h"
 
 #include <cstdint>
@@ -14,50 +17,12 @@ struct AnalogyPair {
     IndexBox inner;                      ///< what may be copied: features do not reach out of it
 };
 
-struct VolumeAnalogyOptions {
-    int levels = 0;       ///< of the pyramid, 1..6; 0: see usefulLevels
-    int sweeps = 2;       ///< over the voxels of every level, 1..10
-    int half = 2;         ///< a neighbourhood is (2 half + 1)^3 samples, 1..4
-    int coarseHalf = 1;   ///< the same at the next coarser level, 1..3
-    int components = 16;  ///< principal axes that features are compared along, 4..256
-    /// How much farther in feature space a voxel may lie that goes on from what a neighbour copied, before
-    /// the nearest of all is taken; at level l this counts 2^-l times [ashikhmin2001; hertzmann2001, 3.2].
-    /// 0..100
-    double coherence = 0.5;
-    double slack = 4;  ///< FeatureIndex::nearest's; 0: exact; 4 is 0.6 % farther on average and twice as fast
-    bool causal = false;  ///< true: of what is made only what lies behind a voxel counts, as in the paper
-    bool bent =
-        true;  ///< neighbourhoods follow the surface's curvature; false: straight cubes, as in the paper
-    bool aligned = true;  ///< false: the paper's naive variant, neighbourhoods along the grid's axes
-};
-
-/// @throw Error InvalidOption (a field out of its range)
-void validate(const VolumeAnalogyOptions& options);
-
-/// What one level took.
-struct AnalogyLevelStats {
-    std::size_t voxels = 0;      ///< that were synthesised
-    std::size_t waves = 0;       ///< of voxels that were worked out side by side
-    std::size_t features = 0;    ///< of the pairs
-    std::size_t components = 0;  ///< axes used
-    double explained = 0;        ///< share of the features' variance along them
-    double coherent = 0;         ///< share of voxels whose source goes on from a neighbour's
-    /// Root of the mean squared feature distance, when the level is done, of at most kProbed voxels spread
-    /// evenly: to what they copied, and to the nearest of all.
-    double meanDistance = 0, exactDistance = 0;
-};
-
-inline constexpr std::size_t kProbed = 2000;
-
-/// A voxel of the target and the one it was copied from.
-struct AnalogySource {
-    Index3 to, from;
-    std::int32_t pair = 0;
-};
-
+/// Where everything in a result comes from; readAnalogy makes the result of it.
 struct VolumeAnalogyResult {
-    BrickField distance;  ///< [voxels] its zero level is the result; no valid distance elsewhere
-    std::vector<AnalogySource> sources;
+    /// Of every voxel that was synthesised, in the target's voxels: the place in its pair, in that pair's
+    /// voxels, moved along the normal to the target's own depth, and the rotation between their frames.
+    ElementSources sources;
+    std::vector<DepthRun> depths;           ///< what all other voxels are
     std::vector<AnalogyLevelStats> levels;  ///< coarsest first
 };
 
@@ -79,7 +44,8 @@ inline constexpr int kRoom = 36;  ///< [voxels of the level]
 ///    a wave runs on all threads and the result does not depend on their number;
 ///  - candidates that go on from what neighbours copied come first, and bound the search for the rest;
 ///  - the value copied is read where the source would lie if its depth were exactly the target's, and after
-///    a level's last sweep each voxel takes the mean of what its neighbours' sources say about its place.
+///    a level's last sweep each voxel takes the mean of what its neighbours' sources say about its place; at
+///    the finest level that is readAnalogy's.
 /// @param target   box begins at 0, distances [voxels], wide enough for what is added
 /// @throw Error InvalidOption, ShapeMismatch and BadData (fields that begin elsewhere, differ in size within
 /// a pair or hold NaN), Unusable (a pair too small for the levels), Cancelled
@@ -88,5 +54,19 @@ inline constexpr int kRoom = 36;  ///< [voxels of the level]
 VolumeAnalogyResult makeAnalogy(const std::vector<AnalogyPair>& pairs, const BrickField& target,
                                 const FrameField& frames, const VolumeAnalogyOptions& options,
                                 const RunContext& ctx = {});
+
+inline constexpr float kAnalogyFar = 6;  ///< [voxels] of what is not near the result's surface
+
+/// The textured distance field that sources make over a target: gatherThroughSources where there are any,
+/// kAnalogyFar times the map's factor inside or outside by depth elsewhere. Its zero level is the result; it
+/// is no valid distance away from it.
+/// @param sources    positions as `textured` places them
+/// @param mapBox     of the sources, size of the target over factor
+/// @param textured   of each pair, see gatherThroughSources
+/// @param target     plain distances [its voxels], box begins at 0
+/// @param factor     voxels of the target along one of the map's
+BrickField readAnalogy(const ElementSources& sources, const std::vector<DepthRun>& depths,
+                       const IndexBox& mapBox, const std::vector<ExemplarSamples>& textured,
+                       const BrickField& target, int factor = 1, const RunContext& ctx = {});
 
 }  // namespace vdbsynth

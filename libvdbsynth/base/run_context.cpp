@@ -1,9 +1,9 @@
 #include "libvdbsynth/base/run_context.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
 namespace vdbsynth {
@@ -19,10 +19,9 @@ void message(const RunContext& ctx, MessageLevel level, const std::string& text)
 
 void requireMemory(const RunContext& ctx, double bytes, const std::string& what, const std::string& hint) {
     if (ctx.maxMemory == 0 || bytes <= double(ctx.maxMemory)) return;
-    char text[96];
-    std::snprintf(text, sizeof text, " needs about %.3g GB, over `maxMemory` %.3g GB; ", bytes / 1e9,
-                  double(ctx.maxMemory) / 1e9);
-    throw Error(ErrorCode::Memory, what + text + hint);
+    throw Error(ErrorCode::Memory, what + " needs about " + roundedText(bytes / 1e9, 3) +
+                                       " GB, over `maxMemory` " +
+                                       roundedText(double(ctx.maxMemory) / 1e9, 3) + " GB; " + hint);
 }
 
 Stage::Stage(const RunContext& ctx, std::string name, std::size_t total, bool reading) : mContext(ctx) {

@@ -2,6 +2,7 @@
 // paired faces a vertex of its own (the "cutting" of non-manifold surfaces).
 #include "libvdbsynth/geometry/mesh.h"
 #include "libvdbsynth/math/disjoint_sets.h"
+#include "libvdbsynth/math/trigonometry.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,7 +66,7 @@ double angleAround(const Mesh& mesh, const Faces& faces, const Side& side) {
     const Vec3d away = out - axis * dot(out, axis);
     Vec3d u = std::abs(axis.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
     u = normalized(u - axis * dot(u, axis));
-    const double angle = std::atan2(dot(away, cross(axis, u)), dot(away, u));
+    const double angle = arcTangent(dot(away, cross(axis, u)), dot(away, u));
     return angle < 0 ? angle + 6.283185307179586 : angle;
 }
 

@@ -72,7 +72,7 @@ Vec3f planeNormal(const PointCloud& cloud, const std::uint32_t* row) {
     for (std::size_t k = 0; k < kPlane; ++k) mean += place(k) / double(kPlane);
     for (std::size_t k = 0; k < kPlane; ++k) spread += (place(k) - mean) * (place(k) - mean).transpose();
     const Eigen::Vector3d normal =
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>().computeDirect(spread).eigenvectors().col(0);
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
     const Vec3f result{float(normal.x()), float(normal.y()), float(normal.z())};
     return std::isfinite(result.x + result.y + result.z) && length(result) > 0.5f ? normalized(result)
                                                                                   : Vec3f{0, 0, 1};

@@ -1,5 +1,7 @@
 #include "libvdbsynth/geometry/winding_number.h"
 
+#include "libvdbsynth/math/trigonometry.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,7 +9,6 @@
 namespace vdbsynth {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr float kFar = 3;  // radii from a cluster at which its dipole stands for it
 constexpr std::uint32_t kLeafFaces = 8;
 
@@ -18,7 +19,7 @@ double solidAngle(const Vec3d& p, const Vec3f& a, const Vec3f& b, const Vec3f& c
     const double above = dot(u, cross(v, w));
     const double below = lu * lv * lw + dot(u, v) * lw + dot(v, w) * lu + dot(w, u) * lv;
     if (above == 0 && below == 0) return 0;
-    return std::atan2(above, below) / (2 * kPi);
+    return arcTangent(above, below) / (2 * kPi);
 }
 
 // Solid angle of a small area at a place, over 4 pi.

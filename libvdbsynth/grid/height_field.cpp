@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace vdbsynth {
 namespace {
@@ -106,9 +105,7 @@ std::vector<float> edgeDistances(const HeightMap& map) {
 }
 
 std::string rounded(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
-    return text;
+    return roundedText(value, 6);
 }
 
 // Sizes [world] that an image's slab has.

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace vdbsynth {
 namespace {
@@ -15,9 +14,7 @@ namespace {
 constexpr int kSide = BrickField::kSide;
 
 std::string rounded(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
-    return text;
+    return roundedText(value, 6);
 }
 
 Index3 nearestSample(const Raster& raster, const Index3& p) {

@@ -2,6 +2,7 @@
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/grid/brick_field.h"
 #include "libvdbsynth/grid/raster.h"
+#include "libvdbsynth/grid/raster_options.h"
 
 #include <optional>
 #include <string>
@@ -22,20 +23,6 @@ struct RasterField {
 
 inline constexpr float kRasterFieldLimit = 4.f;  ///< largest value of the fields here
 inline constexpr int kRasterFieldMargin = 6;     ///< voxels that they go beyond the domain
-
-/// Where the ground of a height field lies. Columns run along its first axis, rows from bottom to top along
-/// its second, height along the third.
-enum class HeightPlane { XY, YZ, ZX };
-
-struct HeightOptions {
-    double voxelSize = 0;  ///< [world] above 0; 0: the pixel's size, or by resolution
-    int resolution = 0;    ///< voxels along the image's longer side; 0: one a pixel
-    double pixelSize = 0;  ///< [world] above 0; 0: the file's, else 1
-    double height = 0;  ///< [world] above 0, from black to white, or from the lowest to the highest of real
-                        ///< values; 0: a tenth of the image's longer side, real values as they are
-    double base = 0;  ///< [world] above 0, of solid under the lowest place; 0: a twentieth of the longer side
-    HeightPlane plane = HeightPlane::XY;
-};
 
 /// @throw Error InvalidOption (a field out of its range)
 void validate(const HeightOptions& options);
@@ -60,15 +47,6 @@ struct HeightImage {
 /// reaches the field's top, half a voxel above that.
 /// @par Cost    O(voxels of the domain that are not in constant bricks)   @par Repeats yes
 HeightImage topHeights(const BrickField& field, HeightPlane plane, const RunContext& ctx = {});
-
-/// Values from low to high, both counted in.
-using LabelRange = std::pair<double, double>;
-
-struct VolumeOptions {
-    std::optional<double> threshold;  ///< solid where the value is above it
-    std::vector<LabelRange> labels;   ///< solid where the value is one of these
-    double pixelSize = 0;  ///< [world] of the smallest side of a sample's cell; 0: the file's, else 1
-};
 
 /// @throw Error InvalidOption (a field out of its range, both a threshold and labels)
 void validate(const VolumeOptions& options);

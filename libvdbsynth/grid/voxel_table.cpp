@@ -3,29 +3,52 @@
 #include "libvdbsynth/base/parallel.h"
 
 #include <array>
+#include <utility>
 
 namespace vdbsynth {
 namespace {
 
 constexpr int kSide = BrickField::kSide;
 
+// Of a place from the box's corner on, in its brick.
+std::size_t sampleIndex(const Index3& in) {
+    return std::size_t((((in.x & 7) << 3) | (in.y & 7)) << 3 | (in.z & 7));
+}
+
 }  // namespace
+
+VoxelTable::VoxelTable(const IndexBox& box) : mBox(box) {
+    const Index3 size = box.size();
+    mBricks = {(size.x + kSide - 1) / kSide, (size.y + kSide - 1) / kSide, (size.z + kSide - 1) / kSide};
+    mSlots.assign(std::size_t(mBricks.x) * std::size_t(mBricks.y) * std::size_t(mBricks.z), -1);
+}
+
+VoxelTable VoxelTable::of(const IndexBox& box, std::vector<Index3> voxels) {
+    VoxelTable table(box);
+    for (std::size_t i = 0; i < voxels.size(); ++i) {
+        const Index3 in = voxels[i] - box.min;
+        std::int32_t& slot = table.mSlots[table.brickIndex(in.x >> 3, in.y >> 3, in.z >> 3)];
+        if (slot < 0) {
+            slot = std::int32_t(table.mNumbers.size() / BrickField::kSamples);
+            table.mNumbers.resize(table.mNumbers.size() + BrickField::kSamples, -1);
+        }
+        table.mNumbers[std::size_t(slot) * BrickField::kSamples + sampleIndex(in)] = std::int32_t(i);
+    }
+    table.mVoxels = std::move(voxels);
+    return table;
+}
 
 VoxelTable VoxelTable::where(const BrickField& field, const std::function<bool(float)>& wanted,
                              const RunContext& ctx) {
-    VoxelTable table;
-    table.mBox = field.box();
-    const Index3 size = field.box().size();
-    table.mBricks = {(size.x + kSide - 1) / kSide, (size.y + kSide - 1) / kSide,
-                     (size.z + kSide - 1) / kSide};
-    const std::size_t plane = std::size_t(table.mBricks.y) * std::size_t(table.mBricks.z);
+    const Index3 size = field.box().size(), bricks{(size.x + kSide - 1) / kSide, (size.y + kSide - 1) / kSide,
+                                                   (size.z + kSide - 1) / kSide};
+    const std::size_t plane = std::size_t(bricks.y) * std::size_t(bricks.z);
     // Columns of bricks find their voxels side by side and are numbered one after the other.
-    std::vector<std::vector<Index3>> found(std::size_t(table.mBricks.x) * plane);
+    std::vector<std::vector<Index3>> found(std::size_t(bricks.x) * plane);
     parallelFor(ctx, found.size(), 32, [&](std::size_t begin, std::size_t end) {
         std::array<float, BrickField::kSamples> samples;
         for (std::size_t b = begin; b < end; ++b) {
-            const int bx = int(b / plane), by = int(b % plane) / table.mBricks.z,
-                      bz = int(b) % table.mBricks.z;
+            const int bx = int(b / plane), by = int(b % plane) / bricks.z, bz = int(b) % bricks.z;
             const Index3 corner = field.box().min + Index3{bx, by, bz} * kSide;
             const IndexBox brick = IndexBox::cube(corner, kSide).intersection(field.box());
             float value = 0;
@@ -37,20 +60,9 @@ VoxelTable VoxelTable::where(const BrickField& field, const std::function<bool(f
             }
         }
     });
-    table.mSlots.assign(found.size(), -1);
-    for (std::size_t b = 0; b < found.size(); ++b) {
-        if (found[b].empty()) continue;
-        table.mSlots[b] = std::int32_t(table.mNumbers.size() / BrickField::kSamples);
-        const std::size_t first = table.mNumbers.size();
-        table.mNumbers.resize(first + BrickField::kSamples, -1);
-        for (const Index3& p : found[b]) {
-            const Index3 in = p - field.box().min;
-            table.mNumbers[first + std::size_t((((in.x & 7) << 3) | (in.y & 7)) << 3 | (in.z & 7))] =
-                std::int32_t(table.mVoxels.size());
-            table.mVoxels.push_back(p);
-        }
-    }
-    return table;
+    std::vector<Index3> voxels;
+    for (const std::vector<Index3>& column : found) voxels.insert(voxels.end(), column.begin(), column.end());
+    return of(field.box(), std::move(voxels));
 }
 
 }  // namespace vdbsynth

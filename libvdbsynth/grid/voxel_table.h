@@ -19,6 +19,8 @@ public:
     /// @par Repeats same numbers for any number of threads
     static VoxelTable where(const BrickField& field, const std::function<bool(float)>& wanted,
                             const RunContext& ctx = {});
+    /// The voxels given, numbered in their order. @param box  holds them all; each comes once
+    static VoxelTable of(const IndexBox& box, std::vector<Index3> voxels);
 
     std::size_t size() const { return mVoxels.size(); }
     const std::vector<Index3>& voxels() const { return mVoxels; }
@@ -38,6 +40,8 @@ private:
         return (std::size_t(bx) * std::size_t(mBricks.y) + std::size_t(by)) * std::size_t(mBricks.z) +
                std::size_t(bz);
     }
+
+    explicit VoxelTable(const IndexBox& box);
 
     IndexBox mBox;
     Index3 mBricks;

@@ -1,3 +1,4 @@
+#include "libvdbsynth/base/checked_product.h"
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/raster_file.h"
 #include "libvdbsynth/io/raster_readers.h"
@@ -78,7 +79,7 @@ Raster readPixels(const std::string& path, const std::string& content, const Run
                        height = std::int64_t(window.max.y) - window.min.y + 1;
     const std::vector<std::string> names = chooseChannels(path, header.channels());
     // Its best packings make a few thousandths; a line table alone needs eight bytes a chunk of lines.
-    if (double(width) * double(height) > 4000.0 * double(content.size()))
+    if (!productFits({width, height}, 4000 * content.size()))
         throw Error(ErrorCode::BadData, path + ": truncated");
     Raster raster = makeRaster(path, width, height, 1, int(names.size()), ctx);
     raster.rowsFromTop = true;

@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <locale>
 #include <map>
 #include <set>
 #include <sstream>
@@ -186,9 +188,9 @@ private:
         readView(sparse.values.bufferView, std::size_t(sparse.values.byteOffset), accessor.componentType,
                  count, width, replaced);
         for (std::size_t i = 0; i < count; ++i) {
-            const std::size_t row = std::size_t(indices[i]);
-            if (row >= accessor.count)
+            if (!(indices[i] >= 0) || indices[i] >= double(accessor.count))
                 refuse(mPath, "a sparse accessor replaces an element that does not exist");
+            const std::size_t row = std::size_t(indices[i]);
             std::copy_n(replaced.begin() + std::ptrdiff_t(i * width), width,
                         values.begin() + std::ptrdiff_t(row * width));
         }
@@ -304,25 +306,67 @@ bool skipImage(tinygltf::Image*, const int, std::string*, std::string*, int, int
     return true;
 }
 
+// The folder that URIs are read from, and why the last one was not. tinygltf looks for a URI below the folder
+// it is told, then in the working one, where a file of that name would be another: it is told kMark, which
+// says what stands behind it to be the URI.
+struct Folder {
+    std::string path, problem{};
+};
+constexpr const char* kMark = "/";
+
+// The file that a URI names, percent-decoded by tinygltf, or why it is not read.
+std::string resolved(const Folder& folder, const std::string& uri, std::string& problem) {
+    namespace fs = std::filesystem;
+    const fs::path relative = fs::path(uri).lexically_normal();
+    if (uri.find('\0') != std::string::npos)
+        problem = "has a name that no file has";
+    else if (uri.find("://") != std::string::npos)
+        problem = "is an address; only files beside or below the glTF file are read";
+    else if (relative.is_absolute() || (!relative.empty() && *relative.begin() == ".."))
+        problem = "is not beside or below the glTF file; only such files are read";
+    return (fs::path(folder.path) / relative).string();
+}
+
+bool findUri(const std::string& name, void* user) {
+    Folder& folder = *static_cast<Folder*>(user);
+    if (name.compare(0, 1, kMark) != 0) return false;
+    const std::string uri = name.substr(1);
+    std::string why, shown = uri.substr(0, 200);
+    resolved(folder, uri, why);
+    std::replace_if(
+        shown.begin(), shown.end(), [](char c) { return c >= 0 && c < ' '; }, '?');
+    folder.problem = why.empty() ? "" : "its file \"" + shown + "\" " + why;
+    return why.empty();
+}
+
+bool readUri(std::vector<unsigned char>* out, std::string* problem, const std::string& name, void* user) {
+    Folder& folder = *static_cast<Folder*>(user);
+    try {
+        std::string why, path = resolved(folder, name.substr(1), why);
+        // tinygltf takes a plus for a space, as in a web form.
+        std::string plus = path;
+        std::replace(plus.begin(), plus.end(), ' ', '+');
+        std::error_code ignored;
+        if (!std::filesystem::exists(path, ignored) && std::filesystem::exists(plus, ignored)) path = plus;
+        const std::string content = readWholeFile(path);
+        out->assign(content.begin(), content.end());
+        return true;
+    } catch (const std::exception& error) {
+        *problem = folder.problem = error.what();
+        return false;
+    }
+}
+
 // Buffers in files: only ones beside or below the glTF file. Images are not wanted.
-tinygltf::FsCallbacks fileAccess() {
+tinygltf::FsCallbacks fileAccess(Folder& folder) {
     tinygltf::FsCallbacks files{};
-    files.FileExists = [](const std::string& name, void*) { return name.find("..") == std::string::npos; };
+    files.FileExists = findUri;
     files.ExpandFilePath = [](const std::string& name, void*) { return name; };
-    files.ReadWholeFile = [](std::vector<unsigned char>* out, std::string* problem, const std::string& name,
-                             void*) {
-        try {
-            const std::string content = readWholeFile(name);
-            out->assign(content.begin(), content.end());
-            return true;
-        } catch (const std::exception& error) {
-            *problem = error.what();
-            return false;
-        }
-    };
+    files.ReadWholeFile = readUri;
     files.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
         return false;
     };
+    files.user_data = &folder;
     return files;
 }
 
@@ -331,24 +375,25 @@ tinygltf::FsCallbacks fileAccess() {
 Mesh readGltf(const std::string& path, const std::string& content) {
     tinygltf::TinyGLTF loader;
     loader.SetImageLoader(skipImage, nullptr);
-    loader.SetFsCallbacks(fileAccess());
+    Folder folder{folderOf(path)};
+    loader.SetFsCallbacks(fileAccess(folder));
     tinygltf::Model model;
     std::string problem, warning;
-    const std::string folder = folderOf(path);
     bool good = false;
     if (content.size() > 0xfffffff0u) refuse(path, "is over 4 GB");
     try {
         good = content.compare(0, 4, "glTF") == 0
                    ? loader.LoadBinaryFromMemory(&model, &problem, &warning,
                                                  reinterpret_cast<const unsigned char*>(content.data()),
-                                                 unsigned(content.size()), folder)
+                                                 unsigned(content.size()), kMark)
                    : loader.LoadASCIIFromString(&model, &problem, &warning, content.data(),
-                                                unsigned(content.size()), folder);
+                                                unsigned(content.size()), kMark);
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& error) {
         refuse(path, std::string("not a whole glTF file: ") + error.what());
     }
+    if (!good && !folder.problem.empty()) refuse(path, folder.problem);
     if (!good) refuse(path, "not a whole glTF file: " + problem.substr(0, problem.find('\n')));
     for (const std::string& extension : model.extensionsRequired)
         if (extension == "KHR_draco_mesh_compression" || extension == "EXT_meshopt_compression")
@@ -458,6 +503,7 @@ std::string gltfBytes(const Mesh& mesh, bool binary) {
     model.scenes.push_back(scene);
     model.defaultScene = 0;
     std::ostringstream stream;
+    stream.imbue(std::locale::classic());
     tinygltf::TinyGLTF writer;
     if (!writer.WriteGltfSceneToStream(&model, stream, /* prettyPrint= */ false, binary))
         throw Error(ErrorCode::Solver, "the glTF file cannot be composed");

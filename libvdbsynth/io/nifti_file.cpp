@@ -1,4 +1,5 @@
 // NIfTI-1 and NIfTI-2, single files.
+#include "libvdbsynth/base/checked_product.h"
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/raster_readers.h"
 
@@ -182,12 +183,14 @@ Raster readNifti(const std::string& path, const std::string& content, const RunC
             throw Error(ErrorCode::BadData,
                         path + ": holds several volumes or vectors; one value a voxel is read");
     const SampleType type = typeOf(path, h.datatype);
-    const double slices = dimensions > 2 ? h.dims[3] : 1,
-                 bytes = h.dims[1] * h.dims[2] * slices * double(bytesOf(type));
-    if (!(h.offset >= 0) || !(h.offset + bytes <= double(content.size())))
+    // Version 2 has room for sides that no other type holds.
+    const auto side = [&h](int i) { return std::int64_t(std::clamp(h.dims[i], -1e15, 1e15)); };
+    const std::int64_t columns = side(1), rows = side(2), slices = dimensions > 2 ? side(3) : 1;
+    if (!(h.offset >= 0 && h.offset <= double(content.size())) ||
+        !productFits({columns, rows, slices, std::int64_t(bytesOf(type))},
+                     content.size() - std::size_t(h.offset)))
         throw Error(ErrorCode::BadData, path + ": truncated");
-    Raster stored =
-        makeRaster(path, std::int64_t(h.dims[1]), std::int64_t(h.dims[2]), std::int64_t(slices), 1, ctx);
+    Raster stored = makeRaster(path, columns, rows, slices, 1, ctx);
     stored.white = whiteOf(type);
     toFloats(content.data() + std::size_t(h.offset), stored.values.size(), type, h.swap,
              stored.values.data());

@@ -1,4 +1,5 @@
 // NumPy's .npy, versions 1 to 3.
+#include "libvdbsynth/base/checked_product.h"
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/raster_readers.h"
 
@@ -77,11 +78,11 @@ Raster readNpy(const std::string& path, const std::string& content, const RunCon
         throw Error(ErrorCode::BadData, path + ": is an array of " + std::to_string(dimensions) +
                                             " dimensions; two (heights) or three (a volume) are read");
     if (dimensions == 2) sides.insert(sides.begin(), 1);
-    double samples = 1;
-    for (std::int64_t side : sides) samples *= double(side);
-    if (samples * double(bytesOf(header.type)) > double(content.size() - start))
-        throw Error(ErrorCode::BadData, path + ": truncated; it says it holds " +
-                                            std::to_string(std::int64_t(samples)) + " numbers");
+    if (!productFits({sides[0], sides[1], sides[2], std::int64_t(bytesOf(header.type))},
+                     content.size() - start))
+        throw Error(ErrorCode::BadData, path + ": truncated; it says it holds " + std::to_string(sides[0]) +
+                                            " x " + std::to_string(sides[1]) + " x " +
+                                            std::to_string(sides[2]) + " numbers");
     Raster raster = makeRaster(path, sides[2], sides[1], sides[0], 1, ctx);
     raster.rowsFromTop = dimensions == 2;
     raster.stack = dimensions == 3;

@@ -1,8 +1,10 @@
 #include "libvdbsynth/io/output_set.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/path.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -46,10 +48,9 @@ void removeStale(const std::string& folder, const std::string& name) {
             continue;
         const std::string middle = found.substr(prefix.size(), found.size() - prefix.size() - 4);
         const std::string digits = middle.substr(0, middle.find('-'));
-        if (digits.empty() || digits.size() > 9 ||
-            digits.find_first_not_of("0123456789") != std::string::npos)
+        pid_t process = 0;
+        if (digits.find_first_not_of("0123456789") != std::string::npos || !parseWhole(digits, process))
             continue;
-        const pid_t process = pid_t(std::stol(digits));
         if (!stillRuns(process)) std::filesystem::remove(entry.path(), ignored);
     }
 }
@@ -162,6 +163,11 @@ std::string OutputSet::withoutTemporaries(std::string text) const {
 }
 
 void OutputSet::commit() {
+    // What was reserved and never written would replace a good file by an empty one.
+    const auto unwritten = std::stable_partition(mEntries.begin(), mEntries.end(),
+                                                 [](const Entry& entry) { return entry.taken; });
+    for (auto entry = unwritten; entry != mEntries.end(); ++entry) ::unlink(entry->temporary.c_str());
+    mEntries.erase(unwritten, mEntries.end());
     for (const Entry& entry : mEntries) syncToDisk(entry.temporary, entry.path);
     while (!mEntries.empty()) {
         const Entry entry = mEntries.front();

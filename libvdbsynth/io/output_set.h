@@ -6,8 +6,9 @@
 namespace vdbsynth {
 
 /// The outputs of one run. Each is written to `.NAME.PID.tmp` in its own folder (`.NAME.PID-2.tmp` if another
-/// set of this process writes the same file); `commit` renames them once all are complete and on disk, so that
-/// a failed, killed or full-disk run never leaves a half file and never harms an old one. Stale temporaries of dead runs with the same name go when a path is added.
+/// set of this process writes the same file); `commit` renames them once all are complete and on disk, so
+/// that a failed, killed or full-disk run never leaves a half file and never harms an old one. Stale
+/// temporaries of dead runs with the same name go when a path is added.
 class OutputSet {
 public:
     /// @param onTemporary  told each temporary's path before it is made (the supervisor removes them
@@ -28,7 +29,8 @@ public:
     void reserve(const std::string& path);
     /// A message with the outputs' names where it has those of their temporaries.
     std::string withoutTemporaries(std::string text) const;
-    /// Syncs all temporaries to disk, then renames them in the order they were added.
+    /// Syncs all temporaries to disk, then renames them in the order they were added. A path that was
+    /// reserved and never asked for with `add` keeps the file it has: nobody wrote another.
     /// @throw Error Io; nothing was renamed unless a rename itself failed
     void commit();
 

@@ -1,4 +1,5 @@
 // PCD 0.7, the point cloud library's format: a text header, then ascii, binary or LZF-compressed rows.
+#include "libvdbsynth/base/checked_product.h"
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/point_readers.h"
 #include "libvdbsynth/io/text_scanner.h"
@@ -134,22 +135,23 @@ struct Layout {
 
 Layout binaryLayout(const std::string& path, const std::string& content, const Header& header,
                     std::string& unpacked) {
-    const std::uint64_t size = std::uint64_t(header.points) * std::uint64_t(header.rowBytes);
+    const std::optional<std::int64_t> size = checkedProduct({header.points, header.rowBytes});
     const std::string_view rest = std::string_view(content).substr(header.bytes);
     const auto truncated = [&](const char* what) {
         return Error(ErrorCode::BadData, path + ": the header claims " + std::to_string(header.points) +
                                              " points, more than the file " + what);
     };
+    if (!size) throw truncated("can hold");
     if (header.data == "binary") {
-        if (size > rest.size()) throw truncated("holds");
+        if (std::uint64_t(*size) > rest.size()) throw truncated("holds");
         return {rest, false};
     }
     std::uint32_t sizes[2];
     if (rest.size() < sizeof sizes) throw truncated("holds");
     std::memcpy(sizes, rest.data(), sizeof sizes);
-    if (sizes[1] != size || sizes[0] > rest.size() - sizeof sizes || size / 300 > sizes[0])
+    if (sizes[1] != *size || sizes[0] > rest.size() - sizeof sizes || *size / 300 > sizes[0])
         throw truncated("holds compressed");
-    unpacked = unpackLzf(path, rest.substr(sizeof sizes, sizes[0]), std::size_t(size));
+    unpacked = unpackLzf(path, rest.substr(sizeof sizes, sizes[0]), std::size_t(*size));
     return {unpacked, true};
 }
 

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 
 namespace vdbsynth {
@@ -104,12 +103,6 @@ Header readHeader(const std::string& path, const std::string& content) {
         scanner.skipLine();
     }
     scanner.fail("the header has no end_header; the file is truncated");
-}
-
-std::string shortText(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.10g", value);
-    return text;
 }
 
 // Reads numbers one after another, from text or bytes.
@@ -278,7 +271,7 @@ std::int64_t readIndex(Body& body, const Property& property, const std::string& 
     const double index = body.number(property.value);
     if (index == -1) return -1;
     if (!(index >= 0) || index >= double(vertices) || index != std::floor(index))
-        body.fail(what + " uses vertex " + shortText(index) + " of " + std::to_string(vertices) +
+        body.fail(what + " uses vertex " + roundedText(index, 10) + " of " + std::to_string(vertices) +
                   " (counting from 0)");
     return std::int64_t(index);
 }

@@ -1,4 +1,5 @@
 // Netpbm: pgm and ppm, ascii and binary.
+#include "libvdbsynth/base/checked_product.h"
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/raster_readers.h"
 #include "libvdbsynth/io/text_scanner.h"
@@ -17,8 +18,8 @@ Raster readPnm(const std::string& path, const std::string& content, const RunCon
     const std::size_t channels = colour ? 3 : 1;
     // A sample takes at least a byte, in text at least two.
     const std::size_t width2 = white > 255 ? 2 : 1, perSample = ascii ? 2 : width2;
-    const double room = double(content.size() - scanner.position()) + 1;
-    if (width > 0 && height > 0 && double(width) * double(height) * double(channels * perSample) > room)
+    const std::size_t room = content.size() - scanner.position() + 1;
+    if (width > 0 && height > 0 && !productFits({width, height, std::int64_t(channels * perSample)}, room))
         throw Error(ErrorCode::BadData, path + ": truncated; it says it has " + std::to_string(width) +
                                             " x " + std::to_string(height) + " pixels");
     Raster raster = makeRaster(path, width, height, 1, int(channels), ctx);

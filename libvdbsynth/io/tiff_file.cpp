@@ -1,13 +1,14 @@
+#include "libvdbsynth/base/checked_product.h"
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/raster_readers.h"
 #include "libvdbsynth/io/text_scanner.h"
+#include "libvdbsynth/math/trigonometry.h"
 
 #include <tiffio.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdarg>
-#include <cstdlib>
 #include <memory>
 
 namespace vdbsynth {
@@ -176,12 +177,14 @@ private:
             height = std::min(height, layout.height);
         }
         const tmsize_t most = tiled ? TIFFTileSize(mFile) : TIFFStripSize(mFile);
-        if (width == 0 || height == 0 || width > 1 << 24 || most <= 0) fail();
+        if (width == 0 || height == 0 || width > 1 << 24 || height > 1 << 24 || most <= 0) fail();
         requireMemory(mContext, double(most), mPath + ": a strip", "store it in smaller ones");
         std::vector<char> bytes(static_cast<std::size_t>(most));
         const std::uint32_t across = (layout.width + width - 1) / width,
                             down = (layout.height + height - 1) / height;
         const std::uint32_t planes = layout.planar == PLANARCONFIG_SEPARATE ? layout.samples : 1;
+        // libtiff counts pieces in 32 bits.
+        if (!productFits({across, down, planes}, 0xffffffffu)) fail();
         for (std::uint32_t plane = 0; plane < planes; ++plane)
             for (std::uint32_t i = 0; i < across * down; ++i) {
                 const std::uint32_t number = plane * across * down + i;
@@ -261,7 +264,7 @@ void readGeography(TIFF* file, Raster& raster) {
     const double* tie = static_cast<const double*>(valuesOf(file, kTiePoint, TIFF_DOUBLE, count));
     if (tie && count >= 6) latitude = tie[4] - (raster.size.y / 2.0 - tie[1]) * scale[1];
     constexpr double kMetresPerDegree = 111320, kRadians = 3.14159265358979323846 / 180;
-    const double narrowing = std::abs(latitude) < 89 ? std::cos(latitude * kRadians) : 1;
+    const double narrowing = std::abs(latitude) < 89 ? cosine(latitude * kRadians) : 1;
     raster.spacing = {scale[0] * kMetresPerDegree * narrowing, scale[1] * kMetresPerDegree, 1};
     raster.unit = "m";
 }
@@ -273,7 +276,10 @@ void refuseContiguousStack(TIFF* file, const std::string& path) {
     const std::string words = text;
     const std::size_t images = words.find("images=");
     if (words.compare(0, 7, "ImageJ=") != 0 || images == std::string::npos) return;
-    const bool several = std::atoi(words.c_str() + images + 7) > 1 && TIFFNumberOfDirectories(file) == 1;
+    const std::size_t number = images + 7, end = words.find_first_not_of("0123456789", number);
+    int count = 0;
+    const bool several = parseWhole(words.substr(number, end - number), count) && count > 1 &&
+                         TIFFNumberOfDirectories(file) == 1;
     if (several)
         throw Error(
             ErrorCode::BadData,

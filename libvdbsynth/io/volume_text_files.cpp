@@ -1,4 +1,5 @@
 // Volumes whose headers are text: GSLIB (as SGeMS writes it) and INRIMAGE.
+#include "libvdbsynth/base/checked_product.h"
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/raster_readers.h"
 #include "libvdbsynth/io/text_scanner.h"
@@ -19,8 +20,7 @@ Raster readGslib(const std::string& path, const std::string& content, const RunC
         scanner.fail("the second line must be the number of variables, 1 to 1000");
     scanner.skipLine();
     for (std::int64_t i = 0; i < variables; ++i) scanner.skipLine();
-    if (double(columns) * double(rows) * double(slices) * double(variables) * 2 >
-        double(content.size() - scanner.position()) + 2)
+    if (!productFits({columns, rows, slices, variables, 2}, content.size() - scanner.position() + 2))
         throw Error(ErrorCode::BadData, path + ": truncated; it says it has " + std::to_string(columns) +
                                             " x " + std::to_string(rows) + " x " + std::to_string(slices) +
                                             " cells");
@@ -78,8 +78,7 @@ Raster readInr(const std::string& path, const std::string& content, const RunCon
     const SampleType type = inrType(path, fields["TYPE"], fields["PIXSIZE"]);
     const std::int64_t columns = side("XDIM"), rows = side("YDIM"), slices = side("ZDIM");
     const std::size_t start = end + 4;
-    if (double(columns) * double(rows) * double(slices) * double(bytesOf(type)) >
-        double(content.size() - start))
+    if (!productFits({columns, rows, slices, std::int64_t(bytesOf(type))}, content.size() - start))
         throw Error(ErrorCode::BadData, path + ": truncated");
     Raster raster = makeRaster(path, columns, rows, slices, 1, ctx);
     raster.stack = true;

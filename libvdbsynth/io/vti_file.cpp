@@ -1,4 +1,5 @@
 // VTK ImageData in XML.
+#include "libvdbsynth/base/checked_product.h"
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/gzip.h"
 #include "libvdbsynth/io/raster_readers.h"
@@ -234,13 +235,13 @@ Raster readVti(const std::string& path, const std::string& content, const RunCon
     if (extent.size() != 6) refuse(path, "its Extent is not six numbers");
     bool cells = false;
     const pugi::xml_node array = chooseArray(path, piece, cells);
-    double sides[3];
-    for (std::size_t i = 0; i < 3; ++i) sides[i] = extent[2 * i + 1] - extent[2 * i] + (cells ? 0 : 1);
+    std::int64_t sides[3];
+    for (std::size_t i = 0; i < 3; ++i)
+        sides[i] = std::int64_t(std::clamp(extent[2 * i + 1] - extent[2 * i] + (cells ? 0 : 1), -1e15, 1e15));
     // Text or bytes of a sample, or what zlib makes of a thousandth.
-    if (sides[0] * sides[1] * sides[2] > (encoding.compressed ? 1100.0 : 1.0) * double(content.size()))
-        refuse(path, "truncated");
-    Raster raster =
-        makeRaster(path, std::int64_t(sides[0]), std::int64_t(sides[1]), std::int64_t(sides[2]), 1, ctx);
+    if (!productFits({sides[0], sides[1], sides[2]}, (encoding.compressed ? 1100 : 1) * content.size()))
+        refuse(path, "truncated, or its Extent is of no samples");
+    Raster raster = makeRaster(path, sides[0], sides[1], sides[2], 1, ctx);
     raster.stack = true;
     const std::vector<double> spacing = numbersOf(image.attribute("Spacing").as_string("1 1 1")),
                               origin = numbersOf(image.attribute("Origin").as_string("0 0 0"));

@@ -1,18 +1,20 @@
 #include "libvdbsynth/math/line_transform.h"
 
+#include "libvdbsynth/math/trigonometry.h"
+
 #include <cmath>
 
 namespace vdbsynth {
 
 // What kissfft does with its numbers besides adding and multiplying: to make roots of unity, once.
 static Lanes cos(const Lanes& angle) {
-    return {std::cos(double(angle))};
+    return {cosine(double(angle))};
 }
 static Lanes sin(const Lanes& angle) {
-    return {std::sin(double(angle))};
+    return {sine(double(angle))};
 }
 static Lanes exp(const Lanes& power) {
-    return {std::exp(double(power))};
+    return {exponential(double(power))};
 }
 static Lanes operator*(std::size_t times, const Lanes& angle) {
     return {double(times) * double(angle)};
@@ -53,7 +55,7 @@ int transformLength(int atLeast) {
 }
 
 double transformRounding(double samples) {
-    return 1.3e-6 * std::ceil(std::log2(samples));
+    return 1.3e-6 * std::ceil(logarithm2(samples));
 }
 
 }  // namespace vdbsynth

@@ -1,17 +1,12 @@
 #pragma once
 #include "libvdbsynth/measure/functionals.h"
+#include "libvdbsynth/measure/measures.h"
 #include "libvdbsynth/measure/occupancy.h"
 
 #include <cstdint>
 #include <vector>
 
 namespace vdbsynth {
-
-/// Parts of a solid that hang together, or of a void.
-struct Components {
-    std::vector<std::uint64_t> sizes;     ///< [components] voxels, largest first
-    std::vector<std::uint64_t> interior;  ///< sizes of those that do not touch the box's faces, largest first
-};
 
 enum class Neighbours {
     Faces = 6,  ///< what the void uses

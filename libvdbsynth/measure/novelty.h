@@ -2,6 +2,7 @@
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/grid/brick_field.h"
 #include "libvdbsynth/math/vec3.h"
+#include "libvdbsynth/measure/measures.h"
 
 #include <memory>
 #include <vector>
@@ -15,19 +16,6 @@ struct SourcedVoxel {
     Index3 place;   ///< in the result
     Index3 source;  ///< in its exemplar
     std::int32_t exemplar = 0;
-};
-
-/// Runs: voxels that touch by faces and whose sources lie just as they do.
-struct Novelty {
-    std::size_t voxels = 0;    ///< that have a source
-    double verbatimShare = 0;  ///< of the voxels looked at, that have a neighbour in their run
-    double meanRun = 0;        ///< [voxels] mean size of runs of two voxels and more
-    double largestRun = 0;     ///< [voxels]
-    double largestShare = 0;   ///< largestRun over the exemplar's own voxels near its surface
-    double exemplarUsed = 0;   ///< share of the exemplar's own voxels near its surface that are a source
-    double seamRatio = 0;      ///< mean change of the gradient between neighbours of different runs over that
-                               ///< within runs: 1 is a seam nobody sees. 0 where there is no seam.
-    double seamShare = 0;      ///< of the pairs of neighbours, that belong to different runs
 };
 
 /// @param voxels       those that have a source, any order, no place twice

@@ -3,6 +3,7 @@
 #include "libvdbsynth/grid/brick_field.h"
 #include "libvdbsynth/math/index_box.h"
 #include "libvdbsynth/measure/functionals.h"
+#include "libvdbsynth/measure/measures.h"
 #include "libvdbsynth/measure/occupancy.h"
 
 #include <memory>
@@ -71,14 +72,6 @@ PatchMatches matchPatches(const PatchScale& from, const PatchScale& to, std::siz
 /// Mean squared difference of two patches by their corners.
 double patchCost(const BrickField& a, const Index3& cornerA, const BrickField& b, const Index3& cornerB);
 
-/// Local-patch similarity of occupancies [wu2022, section 5]: patches of 11^3 voxels, every fifth voxel, of
-/// whole objects' boxes padded by 5 void voxels, of textures only inside the box, whose middle 3^3 has both
-/// kinds; of up to 1000 of `other` by lot the share whose best match among all of `reference` is over 0.95.
-struct LocalPatches {
-    double shareIoU = 0;    ///< LP-IoU
-    double shareScore = 0;  ///< LP-F, the F-score in place of the intersection over union
-    double meanIoU = 0;     ///< mean of the best intersection over union
-};
 struct PatchBits {
     Occupancy solid;
     Beyond beyond = Beyond::Void;

@@ -2,17 +2,11 @@
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/geometry/mesh.h"
 #include "libvdbsynth/math/index_box.h"
+#include "libvdbsynth/measure/measures.h"
 
 #include <optional>
 
 namespace vdbsynth {
-
-/// How far two surfaces are apart, both ways [aspert2002].
-struct SurfaceDistance {
-    double mean = 0;       ///< mean distance of the vertices of each, weighted by area, the larger way
-    double rootMean = 0;   ///< the same of squares, under a root
-    double hausdorff = 0;  ///< the largest distance of any vertex
-};
 
 /// Distances run from each vertex to the nearest point of the faces around the other mesh's 8 nearest
 /// vertices, so meshes should be about as fine as each other, as two zero levels are.

@@ -1,4 +1,5 @@
 #pragma once
+#include "libvdbsynth/measure/measures.h"
 #include "libvdbsynth/measure/statistics.h"
 
 #include <array>
@@ -13,18 +14,6 @@ namespace vdbsynth {
 /// @return empty if a box would be under `shortest` voxels long along a stationary axis
 std::vector<IndexBox> subVolumes(const IndexBox& box, const std::array<bool, 3>& stationary, int shortest);
 
-/// One statistic of a result beside the spread of the exemplar's own sub-volumes.
-struct Verdict {
-    std::string name;
-    double mean = 0;      ///< of the sub-volumes; of a curve or several numbers: 0
-    double sigma = 0;     ///< standard deviation, that is, root mean square distance from the mean
-    double distance = 0;  ///< of the result from the mean
-    double quartile = 0;  ///< 75th percentile (nearest rank) of the sub-volumes' distances from their mean
-    double away() const { return sigma > 0 ? distance / sigma : distance > 0 ? 1e9 : 0; }
-    /// Within two sigma and no further than three quarters of the sub-volumes.
-    bool passes() const { return distance <= 2 * sigma && distance <= quartile; }
-};
-
 /// The mean of one statistic over several boxes, value by value. @param parts  one at least
 Statistic meanOf(const std::vector<Statistic>& parts);
 
@@ -37,18 +26,5 @@ Verdict judgeDistance(const std::string& name, const std::vector<double>& parts,
 
 /// @return null if there is none of that name
 const Verdict* findVerdict(const std::vector<Verdict>& verdicts, const std::string& name);
-
-/// How far results are from an exemplar by the yardstick of its process.
-struct Yardstick {
-    std::string name;
-    double results = 0;  ///< mean distance of the results from the exemplar
-    double fresh = 0;    ///< mean distance of fresh exemplars of the process from it
-    double shifted = 0;  ///< distance of the exemplar itself, shifted by half a voxel
-    /// 1: as far as another exemplar of the process is.
-    double ratio() const {
-        const double unit = fresh > shifted ? fresh : shifted;
-        return unit > 0 ? results / unit : results > 0 ? 1e9 : 0;
-    }
-};
 
 }  // namespace vdbsynth

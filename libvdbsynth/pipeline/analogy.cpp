@@ -3,8 +3,6 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
-#include "libvdbsynth/grid/field_sampling.h"
-#include "libvdbsynth/measure/crumbs.h"
 #include "libvdbsynth/pipeline/analogy_steps.h"
 #include "libvdbsynth/pipeline/carry.h"
 #include "libvdbsynth/pipeline/control.h"
@@ -21,8 +19,6 @@
 namespace vdbsynth {
 namespace {
 
-constexpr float kResultBand = 6;  // [voxels] in which the result's distances are blended
-constexpr int kCrumbSide = 4;     // [voxels] parts that fit a cube of this side may be crumbs
 constexpr float kMaskBorder = 3;  // [voxels] over which a model's mask fades
 
 DirectionSource directionOfPair(const LevelSet& plain, const DirectionSource& given) {
@@ -36,7 +32,6 @@ DirectionSource directionOfPair(const LevelSet& plain, const DirectionSource& gi
 // 0..1 over the target's box.
 BrickField weights(const AnalogyOptions& options, const IndexBox& box, const openvdb::FloatGrid& like,
                    const RunContext& ctx) {
-    if (!options.mask) return BrickField(IndexBox::fromSize(box.size()), float(options.strength));
     ControlFrame frame;
     frame.box = box;
     frame.like = &like;
@@ -52,94 +47,35 @@ BrickField weights(const AnalogyOptions& options, const IndexBox& box, const ope
     });
 }
 
-// The target where the weight is 0, what was made where it is 1, in between their mean.
-BrickField blended(const BrickField& target, const BrickField& made, const BrickField& weight,
-                   const RunContext& ctx) {
-    return BrickField::generate(made.box(), ctx, [&](const IndexBox& brick, float* samples) {
-        std::array<float, BrickField::kSamples> plain, share;
-        made.readBox(brick.min, brick.size(), samples);
-        target.readBox(brick.min, brick.size(), plain.data());
-        weight.readBox(brick.min, brick.size(), share.data());
-        for (std::size_t i = 0; i < plain.size(); ++i) {
-            const float before = std::clamp(plain[i], -kResultBand, kResultBand);
-            samples[i] = share[i] == 1 ? samples[i] : before + share[i] * (samples[i] - before);
-        }
-    });
+// What was made, as a map: positions in the pairs' index spaces, on voxels of the target's.
+SourceMap mapOf(const VolumeAnalogyResult& made, const std::vector<PairFields>& fields,
+                const std::vector<AnalogyModelPair>& pairs, const LevelSet& target, double scale) {
+    SourceMap map;
+    map.method = MapMethod::Analogy;
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+        const LevelSet& textured = *pairs[p].textured;
+        map.exemplars.push_back({fields[p].box, textured.domain, levelSetHash(*textured.grid),
+                                 fields[p].cutTextured, transformOf(*textured.grid)});
+    }
+    map.voxelSize = voxelSizeOf(*pairs.front().textured->grid);
+    map.target = {levelSetHash(*target.grid), voxelSizeOf(*target.grid), target.domainRecorded};
+    map.analogy.scale = scale;
+    map.analogy.depths = made.depths;
+    return map;
 }
 
-void clean(BrickField& field, const std::vector<PairFields>& pairs, const RunContext& ctx) {
-    std::vector<std::shared_ptr<const BrickField>> exemplars;
-    for (const PairFields& pair : pairs) exemplars.push_back(pair.textured);
-    for (const bool ofVoid : {false, true}) {
-        const CrumbLimits limits =
-            crumbLimits(exemplars, std::uint64_t(kCrumbSide) * kCrumbSide * kCrumbSide, ofVoid, ctx);
-        const std::size_t changed = removeCrumbs(field, limits, ofVoid, ctx);
-        message(ctx, MessageLevel::Detail,
-                std::to_string(changed) + " voxels of crumbs of the " + (ofVoid ? "void" : "solid") +
-                    " changed sides");
+// @param corner  of the target's box
+ElementSources placed(const ElementSources& made, const std::vector<PairFields>& fields, const Index3& corner,
+                      double scale) {
+    ElementSources sources;
+    for (std::size_t i = 0; i < made.size(); ++i) {
+        Source source = *made.strongest(i);
+        const FieldPlace& place = fields[std::size_t(source.exemplar)].place;
+        source.position = asWritten(place.corner + source.position * place.step);
+        source.scale = float(scale);
+        sources.add(made.voxels()[i] + corner, source);
     }
-}
-
-std::vector<MappedVoxel> mappedVoxels(const VolumeAnalogyResult& made, const std::vector<PairFields>& pairs,
-                                      const IndexBox& box, const openvdb::FloatGrid& result) {
-    std::vector<MappedVoxel> voxels;
-    const auto on = result.getConstAccessor();
-    for (const AnalogySource& source : made.sources) {
-        const Index3 to = source.to + box.min;
-        if (!on.isValueOn(toCoord(to))) continue;
-        const PairFields& pair = pairs[std::size_t(source.pair)];
-        Index3 from;
-        for (int axis = 0; axis < 3; ++axis)
-            from[axis] = int(std::lround(pair.place.corner[axis] + source.from[axis] * pair.place.step));
-        voxels.push_back({to, {std::size_t(source.pair), from, nullptr}});
-    }
-    return voxels;
-}
-
-std::vector<GridPtr> sourceGrids(const VolumeAnalogyResult& made, const std::vector<MappedVoxel>& voxels,
-                                 const std::vector<FrameField>& frames, const FrameField& target,
-                                 const IndexBox& box, const std::vector<AnalogyModelPair>& models,
-                                 const openvdb::FloatGrid& result, double scale) {
-    auto source = openvdb::Vec3IGrid::create(openvdb::Vec3i(0));
-    auto exemplar = openvdb::Int32Grid::create(0);
-    auto rotation = openvdb::Vec3SGrid::create(openvdb::Vec3f(0));
-    source->setName("source");
-    exemplar->setName("exemplar");
-    rotation->setName("source_rotation");
-    std::vector<GridPtr> grids{source, exemplar, rotation};
-    if (scale != 1) {
-        auto scales = openvdb::FloatGrid::create(1);
-        scales->setName("source_scale");
-        for (const MappedVoxel& voxel : voxels) scales->tree().setValueOn(toCoord(voxel.to), float(scale));
-        grids.push_back(scales);
-    }
-    std::size_t next = 0;
-    for (const AnalogySource& of : made.sources) {
-        if (next == voxels.size()) break;
-        const MappedVoxel& voxel = voxels[next];
-        if (of.to + box.min != voxel.to) continue;
-        ++next;
-        const openvdb::Coord to = toCoord(voxel.to);
-        const Index3& from = voxel.from.voxel;
-        source->tree().setValueOn(to, openvdb::Vec3i(from.x, from.y, from.z));
-        exemplar->tree().setValueOn(to, of.pair);
-        Frame a, b;
-        float ignored;
-        const auto middle = [](const Index3& v) { return Vec3f{float(v.x), float(v.y), float(v.z)}; };
-        if (frames[std::size_t(of.pair)].at(middle(of.from), a, ignored) &&
-            target.at(middle(of.to), b, ignored)) {
-            const Vec3f turn = rotationBetween(a, b);
-            rotation->tree().setValueOn(to, openvdb::Vec3f(turn.x, turn.y, turn.z));
-        }
-    }
-    std::string hashes;
-    for (const AnalogyModelPair& model : models)
-        hashes += (hashes.empty() ? "" : ",") + levelSetHash(*model.textured->grid);
-    for (const GridPtr& grid : grids) {
-        grid->setTransform(result.transform().copy());
-        grid->insertMeta("vdbsynth:map:exemplar_hash", openvdb::StringMetadata(hashes));
-    }
-    return grids;
+    return sources;
 }
 
 GridPtr directionGrid(const FrameField& frames, const FieldPlace& place, const IndexBox& box) {
@@ -191,28 +127,23 @@ AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const Leve
     for (std::size_t p = 0; p < pairs.size(); ++p)
         given.push_back({fields[p].plain, fields[p].textured, &pairFrames[p], fields[p].inner});
     VolumeAnalogyResult made = makeAnalogy(given, *plain, frames, options.synthesis, ctx);
-    BrickField field = blended(*plain, made.distance, weights(options, box, *target.grid, ctx), ctx);
-    clean(field, fields, ctx);
-    try {
-        result.model.grid =
-            closeAndRebuild(field, box.min, cut, options.halfWidth, *target.grid, "the result", ctx);
-    } catch (const Error& error) {
-        if (error.code() != ErrorCode::EmptyInput) throw;
-        throw Error(ErrorCode::EmptyInput,
-                    "the texture takes all of the target away: it goes " +
-                        std::to_string(int(std::ceil(result.reach))) +
-                        " voxels deep, and the target is thinner; use smaller voxels for the target, or a "
-                        "smaller `scale` or `strength`");
-    }
-    result.model.domain = target.domainRecorded ? target.domain : solidBox(*result.model.grid, "the result");
-    result.model.domainRecorded = target.domainRecorded;
-    stampLevelSet(result.model);
-    const std::vector<MappedVoxel> voxels = mappedVoxels(made, fields, box, *result.model.grid);
-    result.sources =
-        sourceGrids(made, voxels, pairFrames, frames, box, pairs, *result.model.grid, options.scale);
+    SourceMap& map = result.map = mapOf(made, fields, pairs, target, options.scale);
+    map.elements = placed(made.sources, fields, box.min, options.scale);
+    map.targetBox = box;
+    map.targetDomain = target.domain;
+    map.cut = cut;
+    map.band = float(band);
+    map.halfWidth = options.halfWidth;
+    map.analogy.strength = float(options.strength);
+    if (options.mask) map.analogy.weight = weights(options, box, *target.grid, ctx);
+    std::vector<ExemplarSamples> samples;
     std::vector<const LevelSet*> textured;
-    for (const AnalogyModelPair& pair : pairs) textured.push_back(pair.textured);
-    result.model.carried = carryToVoxels(voxels, textured, *result.model.grid, {}, ctx);
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+        samples.push_back({fields[p].textured, fields[p].place.corner, options.scale});
+        textured.push_back(pairs[p].textured);
+    }
+    result.model = analogyThroughMap(map, 1, samples, *plain, target, result.reach, ctx);
+    result.model.carried = carryThroughMap(map, textured, *result.model.grid, CarriedValues::Copied, ctx);
     if (options.keepDirections) result.directions = directionGrid(frames, place, box);
     result.levels = std::move(made.levels);
     for (const Vec3f& p : frames.directions().singularities)

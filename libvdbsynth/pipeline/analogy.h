@@ -1,6 +1,7 @@
 #pragma once
-#include "libvdbsynth/analogy/volume_analogy.h"
+#include "libvdbsynth/analogy/analogy_options.h"
 #include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/map/source_map.h"
 #include "libvdbsynth/vdb/level_set.h"
 
 #include <cstdint>
@@ -61,8 +62,8 @@ void validate(const AnalogyOptions& options, const std::vector<AnalogyModelPair>
 
 struct AnalogyResult {
     LevelSet model;
-    std::vector<GridPtr> sources;  ///< `source`, `exemplar`, `source_rotation` on the result's band
-    GridPtr directions;            ///< Vec3S beside the target's surface, unit length [world]
+    SourceMap map;       ///< what repeatMap (repeat.h) reads the result through
+    GridPtr directions;  ///< Vec3S beside the target's surface, unit length [world]
     std::vector<AnalogyLevelStats> levels;
     std::vector<Vec3d> singularities;  ///< [world] of the target's directions
     double cut = 0;                    ///< SweepDistance::cut of the target

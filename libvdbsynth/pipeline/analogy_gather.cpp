@@ -40,6 +40,12 @@ void requireOnePlace(const AnalogyModelPair& pair) {
                         "; convert both with the same `voxelSize`");
 }
 
+BrickField gatherTextured(const LevelSet& textured, const IndexBox& box, const CutFaces& cut, float reach,
+                          double scale, const RunContext& ctx) {
+    BrickField field = widenBand(*textured.grid, box, cut, reach, ctx);
+    return scale == 1 ? field : scaled(field, scale, ctx);
+}
+
 CutFaces facesTouched(const LevelSet& model) {
     CutFaces cut{};
     if (!model.domainRecorded) return cut;
@@ -93,13 +99,12 @@ PairFields gatherPair(const AnalogyModelPair& pair, double scale, const RunConte
     fields.box = grown(domain, cut, kMostReach);
     requireMemory(ctx, double(fields.box.volume()) * 12, "the pair", "use larger voxels or crop the pair");
     const auto gathered = [&](const LevelSet& model, const CutFaces& faces) {
-        return widenBand(*model.grid, fields.box, faces, float(kMostReach), ctx);
+        return std::make_shared<const BrickField>(
+            gatherTextured(model, fields.box, faces, float(kMostReach), scale, ctx));
     };
-    BrickField plain = gathered(*pair.plain, cutPlain), textured = gathered(*pair.textured, cutTextured);
-    const bool same = scale == 1;
-    fields.plain = std::make_shared<const BrickField>(same ? std::move(plain) : scaled(plain, scale, ctx));
-    fields.textured =
-        std::make_shared<const BrickField>(same ? std::move(textured) : scaled(textured, scale, ctx));
+    fields.plain = gathered(*pair.plain, cutPlain);
+    fields.textured = gathered(*pair.textured, cutTextured);
+    fields.cutTextured = cutTextured;
     fields.inner = fields.plain->box();
     fields.place = {pair.plain->grid.get(),
                     {double(fields.box.min.x), double(fields.box.min.y), double(fields.box.min.z)},

@@ -31,13 +31,33 @@ IndexBox grown(const IndexBox& domain, const CutFaces& cut, int by);
 /// A pair as fields over one box, at the texture's scale.
 struct PairFields {
     std::shared_ptr<const BrickField> plain, textured;
-    IndexBox box;    ///< index space of the pair
-    IndexBox inner;  ///< of the fields
+    IndexBox box;            ///< index space of the pair
+    IndexBox inner;          ///< of the fields
+    CutFaces cutTextured{};  ///< faces of the box where the textured solid continues beyond
     FieldPlace place;
 };
 
 /// @throw Error ShapeMismatch (other voxels, or no overlap), Memory
 PairFields gatherPair(const AnalogyModelPair& pair, double scale, const RunContext& ctx);
+
+/// A textured model over a box of its index space at the texture's scale: what gatherPair makes of it.
+BrickField gatherTextured(const LevelSet& textured, const IndexBox& box, const CutFaces& cut, float reach,
+                          double scale, const RunContext& ctx);
+
+/// A position as a map's file holds it: a voxel, and single precision from there.
+Vec3d asWritten(const Vec3d& position);
+
+/// The result that a map makes of textured fields and a plain model, rebuilt and stamped; without attributes.
+/// @param factor  see finerMap; `map` counts as it was made
+/// @param plain   distances over the target's box [voxels of the target]
+/// @param reach   [voxels] how deep the texture goes, for a message; 0: not known
+LevelSet analogyThroughMap(const SourceMap& map, int factor, const std::vector<ExemplarSamples>& textured,
+                           const BrickField& plain, const LevelSet& target, float reach,
+                           const RunContext& ctx);
+
+/// repeatMap for an analogy.
+LevelSet repeatAnalogy(const SourceMap& map, int factor, const std::vector<const LevelSet*>& textured,
+                       const LevelSet& target, const RunContext& ctx);
 
 /// How far from the plain surface the textured one goes. [voxels]
 float reachOf(const BrickField& plain, const BrickField& textured);

@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/source_map_grids.h"
 
 #include <openvdb/openvdb.h>
 
@@ -23,17 +24,21 @@ using Blendable =
 struct Link {
     openvdb::Coord to;
     openvdb::Vec3d from;  // world, in the exemplar
-    const ExemplarVariant* variant;
+    Vec3f rotation;
 };
+
+bool rotates(const Vec3f& rotation) {
+    return rotation.x != 0 || rotation.y != 0 || rotation.z != 0;
+}
 
 // For each exemplar the voxels of the result that are read from it.
 std::vector<std::vector<Link>> linksOf(const std::vector<MappedVoxel>& voxels,
                                        const std::vector<const LevelSet*>& exemplars) {
     std::vector<std::vector<Link>> links(exemplars.size());
     for (const auto& [to, source] : voxels) {
-        const openvdb::Vec3d from(source.voxel.x, source.voxel.y, source.voxel.z);
-        links[source.exemplar].push_back(
-            {toCoord(to), exemplars[source.exemplar]->grid->transform().indexToWorld(from), source.variant});
+        const std::size_t e = std::size_t(source.exemplar);
+        links[e].push_back({toCoord(to), exemplars[e]->grid->transform().indexToWorld(toVec(source.position)),
+                            source.rotation});
     }
     return links;
 }
@@ -88,18 +93,19 @@ GridPtr readThrough(const Grid& grid, const std::vector<Link>& links, const open
         made->setTransform(result.transform().copy());
     }
     const bool turns = grid.getVectorType() != openvdb::VEC_INVARIANT;
-    const ExemplarVariant* variant = nullptr;
+    Vec3f rotation;
     Affine turn = kIdentity;
     const auto from = grid.getConstAccessor();
     auto to = made->getAccessor();
     typename Grid::ValueType value;
     for (const Link& link : links) {
-        if (link.variant != variant) {
-            variant = link.variant;
-            turn = variant ? turnBy(variant->rotation) : kIdentity;
+        if (!readNear(from, grid.transform(), link.from, value)) continue;
+        const bool rotated = turns && rotates(link.rotation);
+        if (rotated && length(link.rotation - rotation) > 0) {
+            rotation = link.rotation;
+            turn = turnBy(cast<double>(rotation));
         }
-        if (readNear(from, grid.transform(), link.from, value))
-            to.setValueOn(link.to, turns && variant ? turned(value, turn) : value);
+        to.setValueOn(link.to, rotated ? turned(value, turn) : value);
     }
     return made;
 }
@@ -117,7 +123,7 @@ std::vector<typename Grid::ConstPtr> sameGrids(const std::vector<const LevelSet*
 
 // The mean of what all sources of a voxel have; nothing where none has a value.
 template <typename Grid>
-std::optional<typename Grid::ValueType> blended(const std::vector<VotingSource>& sources,
+std::optional<typename Grid::ValueType> blended(const std::vector<Source>& sources,
                                                 const std::vector<typename Grid::ConstPtr>& grids,
                                                 const std::vector<const LevelSet*>& exemplars) {
     using Value = typename Grid::ValueType;
@@ -125,15 +131,14 @@ std::optional<typename Grid::ValueType> blended(const std::vector<VotingSource>&
     // Differences from one value are summed, so that the mean of equal values is that value.
     Value base = openvdb::zeroVal<Value>(), sum = base, value;
     double total = 0;
-    for (const VotingSource& source : sources) {
-        const typename Grid::ConstPtr& grid = grids[source.from.exemplar];
+    for (const Source& source : sources) {
+        const std::size_t e = std::size_t(source.exemplar);
+        const typename Grid::ConstPtr& grid = grids[e];
         if (!grid) continue;
-        const Index3& from = source.from.voxel;
-        const openvdb::Vec3d world = exemplars[source.from.exemplar]->grid->transform().indexToWorld(
-            openvdb::Vec3d(from.x, from.y, from.z));
+        const openvdb::Vec3d world = exemplars[e]->grid->transform().indexToWorld(toVec(source.position));
         if (!readNear(grid->getConstUnsafeAccessor(), grid->transform(), world, value)) continue;
-        if (source.from.variant && grid->getVectorType() != openvdb::VEC_INVARIANT)
-            value = turned(value, turnBy(source.from.variant->rotation));
+        if (rotates(source.rotation) && grid->getVectorType() != openvdb::VEC_INVARIANT)
+            value = turned(value, turnBy(cast<double>(source.rotation)));
         if (total == 0) base = value;
         sum += (value - base) * Element(source.weight);
         total += double(source.weight);
@@ -175,20 +180,14 @@ void keepCarriedNames(LevelSet& model, const std::vector<std::string>& names) {
                         model.carried.end());
 }
 
-bool isOfSourceMap(const std::string& name) {
-    return name == "source" || name == "exemplar" || name == "vote_source" || name == "vote_weight" ||
-           name == "vote_exemplar" || name == "source_rotation" || name == "source_scale";
-}
-
 std::vector<GridPtr> carryThroughMap(const SourceMap& map, const std::vector<const LevelSet*>& exemplars,
                                      const openvdb::FloatGrid& result, CarriedValues values,
                                      const RunContext& ctx) {
     bool any = false;
     for (const LevelSet* exemplar : exemplars) any = any || !exemplar->carried.empty();
     if (!any) return {};
-    std::vector<GridPtr> carried =
-        carryToVoxels(strongestSources(map, result, ctx), exemplars, result, {}, ctx);
-    if (values == CarriedValues::Copied) return carried;
+    std::vector<GridPtr> carried = carryToVoxels(mappedVoxels(map, result, ctx), exemplars, result, {}, ctx);
+    if (values == CarriedValues::Copied || map.method == MapMethod::Analogy) return carried;
     Stage stage(ctx, "blending attributes", carried.size());
     for (const GridPtr& grid : carried) {
         grid->apply<Blendable>([&](auto& typed) { blendThrough(map, exemplars, typed, ctx); });

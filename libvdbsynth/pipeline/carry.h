@@ -1,15 +1,20 @@
 #pragma once
-#include "libvdbsynth/pipeline/synth.h"
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/map/source_map.h"
+#include "libvdbsynth/vdb/level_set.h"
+
+#include <string>
+#include <vector>
 
 namespace vdbsynth {
 
 /// What came with the exemplars, read through a source map: for every grid that one of them carries one of
 /// the same kind, name and metadata on the result's band inside its domain; grids of one name and kind become
-/// one. A voxel has the value of the exemplar's voxel that had the most say there, or of the nearest active
-/// one within two voxels of it, else none; vectors that have a direction turn with what is turned. Grids of a
-/// source map itself do not come along; grids whose kind or transform cannot be read so are left out with a
+/// one. A voxel has the value at the source with the largest weight there, or of the nearest active voxel
+/// within two voxels of it, else none; vectors that have a direction are rotated with the source. Grids of a
+/// source map itself are left out; grids whose kind or transform cannot be read so are left out with a
 /// warning. With CarriedValues::Blended the values of floats and vectors are then means over all sources that
-/// had a say and a value there.
+/// have a value there; a map of single voxels has but one source each, so there they are copies.
 /// @param map     whose exemplars they are, at their resolution
 /// @param result  what was made through it
 /// @par Cost    O(active voxels of the result), blended times the overlap of blocks
@@ -29,8 +34,5 @@ std::vector<GridPtr> carryToVoxels(const std::vector<MappedVoxel>& voxels,
 bool carries(const LevelSet& model, const std::string& name);
 /// Leaves behind what a model carries of other names.
 void keepCarriedNames(LevelSet& model, const std::vector<std::string>& names);
-
-/// True for the grids that a source map consists of.
-bool isOfSourceMap(const std::string& gridName);
 
 }  // namespace vdbsynth

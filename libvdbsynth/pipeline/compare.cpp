@@ -2,7 +2,7 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
-#include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/source_map_grids.h"
 
 #include <openvdb/openvdb.h>
 
@@ -127,19 +127,12 @@ IndexBox sourcedBox(const MeasuredModel& model) {
 std::vector<SourcedVoxel> sourcesOfMap(const CompareInput& input, const PreparedModel& result,
                                        const PreparedModel& reference) {
     std::vector<SourcedVoxel> voxels;
-    const auto sources = openvdb::gridConstPtrCast<openvdb::Vec3IGrid>(input.source);
-    const auto exemplars =
-        input.exemplar ? openvdb::gridConstPtrCast<openvdb::Int32Grid>(input.exemplar) : nullptr;
-    if (!sources) return voxels;
-    for (auto it = sources->cbeginValueOn(); it; ++it) {
-        if (!it.isVoxelValue()) continue;
-        const Index3 place = fromCoord(it.getCoord()) - result.corner;
+    for (const MappedVoxel& mapped : *input.sources) {
+        const Index3 place = mapped.to - result.corner;
         if (!sourcedBox(result.model).contains(place) ||
-            std::abs(result.model.field->inside(place)) >= kNearSurface)
+            std::abs(result.model.field->inside(place)) >= kNearSurface || mapped.from.exemplar != 0)
             continue;
-        if (exemplars && exemplars->tree().getValue(it.getCoord()) != 0) continue;
-        const openvdb::Vec3i& from = *it;
-        voxels.push_back({place, Index3{from.x(), from.y(), from.z()} - reference.corner, 0});
+        voxels.push_back({place, nearestVoxel(mapped.from) - reference.corner, 0});
     }
     return voxels;
 }
@@ -148,7 +141,7 @@ void measureSources(const CompareInput& input, const PreparedModel& result, cons
                     ModelDistances& distances, const RunContext& ctx) {
     const BrickField &ofResult = *result.model.field, &ofReference = *reference.model.field;
     const IndexBox from = sourcedBox(reference.model);
-    if (input.source) {
+    if (input.sources) {
         std::vector<SourcedVoxel> voxels = sourcesOfMap(input, result, reference);
         distances.verified = verifiedShare(voxels, ofResult, ofReference);
         if (distances.verified >= 0.9) {
@@ -197,21 +190,8 @@ ModelDistances distancesOf(const CompareInput& reference, const PreparedModel& t
 }  // namespace
 
 bool takeSourceMap(const std::vector<GridPtr>& grids, CompareInput& input) {
-    GridPtr source, exemplar;
-    for (const GridPtr& grid : grids) {
-        if (grid->getName() == "source") source = openvdb::gridPtrCast<openvdb::Vec3IGrid>(grid);
-        if (grid->getName() == "exemplar") exemplar = openvdb::gridPtrCast<openvdb::Int32Grid>(grid);
-    }
-    if (!source) return false;
-    const auto matrix = [](const openvdb::GridBase& grid) {
-        return grid.transform().baseMap()->getAffineMap()->getMat4();
-    };
-    const openvdb::Mat4d difference = matrix(*source) - matrix(*input.model.grid);
-    const double voxel = voxelSizeOf(*input.model.grid);
-    for (int i = 0; i < 16; ++i)
-        if (std::abs(difference.asPointer()[i]) > 1e-4 * voxel) return false;
-    input.source = source;
-    input.exemplar = exemplar;
+    if (!hasSourcesIn(grids, *input.model.grid)) return false;
+    input.sources = strongestSourcesIn(grids);
     return true;
 }
 
@@ -252,25 +232,15 @@ Comparison compared(const CompareInput& reference, const std::vector<CompareInpu
 
 }  // namespace
 
-namespace {
-
-void requireInput(const CompareInput& input) {
-    const std::string what = input.name.empty() ? "a model" : input.name;
-    requireModel(&input.model, what);
-    if ((input.source && !input.source->isType<openvdb::Vec3IGrid>()) ||
-        (input.exemplar && !input.exemplar->isType<openvdb::Int32Grid>()))
-        throw Error(ErrorCode::BadData,
-                    what + ": its source map is none; `source` is a grid of Vec3I, `exemplar` one of Int32");
-}
-
-}  // namespace
-
 void validate(const CompareOptions& options, const CompareInput& reference,
               const std::vector<CompareInput>& others) {
     requireOption(options.fresh >= 2 && options.fresh <= 100, "fresh", std::to_string(options.fresh),
                   "a whole number from 2 to 100");
-    requireInput(reference);
-    for (const CompareInput& other : others) requireInput(other);
+    const auto nameOf = [](const CompareInput& input) {
+        return input.name.empty() ? std::string("a model") : input.name;
+    };
+    requireModel(&reference.model, nameOf(reference));
+    for (const CompareInput& other : others) requireModel(&other.model, nameOf(other));
     if (options.process && !reference.model.domainRecorded)
         throw Error(ErrorCode::Unusable, reference.name +
                                              ": has no recorded domain, so `process` cannot "

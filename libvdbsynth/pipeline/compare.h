@@ -1,10 +1,7 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
-#include "libvdbsynth/measure/novelty.h"
-#include "libvdbsynth/measure/patch_distribution.h"
-#include "libvdbsynth/measure/statistics.h"
-#include "libvdbsynth/measure/surface_distance.h"
-#include "libvdbsynth/measure/verdict.h"
+#include "libvdbsynth/map/source_map.h"
+#include "libvdbsynth/measure/measures.h"
 #include "libvdbsynth/procedural/exemplar.h"
 #include "libvdbsynth/vdb/level_set.h"
 
@@ -28,13 +25,12 @@ struct CompareOptions {
 struct CompareInput {
     std::string name;
     LevelSet model;
-    GridConstPtr source;    ///< Vec3I grid of a source map, in the model's voxels; null: none
-    GridConstPtr exemplar;  ///< Int32 grid of a source map; null: all are of the reference
+    /// Of a source map, in the model's voxels; exemplar 0 is the reference. Empty: none is known.
+    std::optional<std::vector<MappedVoxel>> sources;
 };
 
 /// @throw Error InvalidOption (a field out of its range), Unusable (a process that cannot make the
-/// reference's size, or does not know it), BadData (a source map of other kinds of grid), and what
-/// requireModel (vdb/level_set.h) throws
+/// reference's size, or does not know it), and what requireModel (vdb/level_set.h) throws
 void validate(const CompareOptions& options, const CompareInput& reference,
               const std::vector<CompareInput>& others);
 

@@ -1,7 +1,7 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/grid/brick_field.h"
-#include "libvdbsynth/synth/exemplar_variant.h"
+#include "libvdbsynth/map/exemplar_variant.h"
 #include "libvdbsynth/vdb/vdb_fwd.h"
 
 #include <array>

@@ -1,4 +1,4 @@
-#include "libvdbsynth/pipeline/field_model.h"
+#include "libvdbsynth/pipeline/field_model_steps.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/vdb/bricks.h"

@@ -5,11 +5,9 @@
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/geometry/point_neighbours.h"
 #include "libvdbsynth/grid/mesh_distance.h"
-#include "libvdbsynth/pipeline/carry.h"
+#include "libvdbsynth/pipeline/fill_steps.h"
 #include "libvdbsynth/synth/texture_optimization.h"
 #include "libvdbsynth/vdb/bricks.h"
-#include "libvdbsynth/vdb/coord.h"
-#include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/zero_level.h"
 
 #include <openvdb/openvdb.h>
@@ -23,9 +21,6 @@
 namespace vdbsynth {
 namespace {
 
-constexpr float kBand = 8;           // [voxels] of distances that patches compare
-constexpr float kTrust = 0.5f;       // [voxels] by which a distance may reach into the hole
-constexpr float kLeast = 0.3f;       // [voxels] of a voxel that keeps its side
 constexpr float kOffTheMesh = 1.5f;  // [voxels] of a place that is no face of the mesh
 constexpr int kGuessedBlock = 8;     // [voxels] small, of which a damaged model has more whole patches
 constexpr float kAroundSheet = 3.f;  // [voxels] of the balls round a sheet that closed a hole
@@ -59,52 +54,6 @@ openvdb::FloatGrid::Ptr inVoxelsOf(const openvdb::FloatGrid& partial, const Leve
     return moved;
 }
 
-// Everything that is known before the filling, over one box of the partial's voxels.
-struct Surroundings {
-    IndexBox box;
-    CutFaces cut{};
-    BrickField known, hole, open;  // distances [voxels], distances to the hole, 1 where a sample says nothing
-};
-
-// A distance may be trusted if what it is the distance to lies outside the hole.
-bool trusted(float distance, float fromHole) {
-    return fromHole >= 0 && std::abs(distance) <= fromHole + kTrust;
-}
-
-Surroundings surroundingsOf(const LevelSet& partial, const openvdb::FloatGrid& hole, IndexBox box,
-                            const RunContext& ctx) {
-    Surroundings around;
-    if (partial.domainRecorded) {
-        box = box.intersection(partial.domain);
-        if (box.empty())
-            throw Error(ErrorCode::Unusable,
-                        "`hole`: lies outside the model's domain " + boxText(partial.domain));
-        for (int axis = 0; axis < 3; ++axis) {
-            around.cut[std::size_t(2 * axis)] = box.min[axis] == partial.domain.min[axis];
-            around.cut[std::size_t(2 * axis + 1)] = box.max[axis] == partial.domain.max[axis];
-        }
-    }
-    around.box = box;
-    around.known = widenBand(*partial.grid, box, around.cut, kBand, ctx);
-    around.hole = widenBand(hole, box, {}, kBand, ctx);
-    return around;
-}
-
-// 1 where a sample says nothing: in the hole, and where its distance may mean what is in there. With a guess
-// only in the hole, since distances to the guess are as good as it is.
-void markOpen(Surroundings& around, bool guessed, const RunContext& ctx) {
-    around.open = BrickField::generate(around.known.box(), ctx, [&](const IndexBox& brick, float* samples) {
-        float known[BrickField::kSamples], fromHole[BrickField::kSamples];
-        around.known.readBox(brick.min, brick.size(), known);
-        around.hole.readBox(brick.min, brick.size(), fromHole);
-        for (int i = 0; i < BrickField::kSamples; ++i) {
-            const bool says =
-                guessed ? fromHole[i] >= 0 : trusted(known[i], fromHole[i]) || fromHole[i] >= kBand;
-            samples[i] = says ? 0.f : 1.f;
-        }
-    });
-}
-
 // True if what closed the partial left solid and void in the hole: a shape that is worth something as a
 // guess.
 bool hasBothSides(const Surroundings& around, const RunContext& ctx) {
@@ -125,45 +74,6 @@ bool hasBothSides(const Surroundings& around, const RunContext& ctx) {
     return std::min(solid, empty) > (solid + empty) / 20;
 }
 
-// The filled hole; around it what was there, with distances that no longer mean what is gone.
-BrickField joined(const Surroundings& around, const BrickField& filled, const RunContext& ctx) {
-    return BrickField::generate(filled.box(), ctx, [&](const IndexBox& brick, float* samples) {
-        float known[BrickField::kSamples], fromHole[BrickField::kSamples], open[BrickField::kSamples];
-        filled.readBox(brick.min, brick.size(), samples);
-        around.open.readBox(brick.min, brick.size(), open);
-        around.known.readBox(brick.min, brick.size(), known);
-        around.hole.readBox(brick.min, brick.size(), fromHole);
-        for (int i = 0; i < BrickField::kSamples; ++i) {
-            if (fromHole[i] < 0) continue;
-            const float side = known[i] < 0 ? -1.f : 1.f;
-            samples[i] = open[i] == 0.f ? known[i] : side * std::max(kLeast, side * samples[i]);
-        }
-    });
-}
-
-// A copy of the partial with the voxels around the hole from another grid.
-FloatGridPtr replacedAround(const openvdb::FloatGrid& partial, const openvdb::FloatGrid& hole,
-                            const IndexBox& holeBox, const openvdb::FloatGrid& rebuilt) {
-    openvdb::FloatGrid::Ptr result = partial.deepCopy();
-    auto to = result->getAccessor();
-    const auto from = rebuilt.getConstAccessor(), distance = hole.getConstAccessor();
-    const float reach = kHalfWidth * float(voxelSizeOf(partial));
-    const IndexBox box = holeBox.expanded(int(kHalfWidth) + 1);
-    for (int x = box.min.x; x <= box.max.x; ++x)
-        for (int y = box.min.y; y <= box.max.y; ++y)
-            for (int z = box.min.z; z <= box.max.z; ++z) {
-                const openvdb::Coord c(x, y, z);
-                if (distance.getValue(c) >= reach) continue;
-                float value;
-                if (from.probeValue(c, value))
-                    to.setValueOn(c, value);
-                else
-                    to.setValueOff(c, value);
-            }
-    result->pruneGrid();
-    return result;
-}
-
 IndexBox atLeast(IndexBox box, int side) {
     for (int axis = 0; axis < 3; ++axis) {
         const int missing = std::max(0, side - box.size()[axis]);
@@ -173,35 +83,14 @@ IndexBox atLeast(IndexBox box, int side) {
     return box;
 }
 
-// The band inside the hole, and what was copied there.
-std::vector<MappedVoxel> copiedVoxels(const SourceMap& map, const openvdb::FloatGrid& result,
-                                      const openvdb::FloatGrid& hole) {
-    std::vector<MappedVoxel> voxels;
-    const auto distance = hole.getConstAccessor();
-    for (auto it = result.cbeginValueOn(); it; ++it) {
-        const Index3 voxel = fromCoord(it.getCoord());
-        if (map.targetBox.contains(voxel) && distance.getValue(it.getCoord()) < 0)
-            voxels.push_back({voxel, strongestSource(map, voxel)});
-    }
-    return voxels;
-}
-
-std::vector<GridPtr> sourceGrids(const std::vector<MappedVoxel>& voxels, const SourceMap& map,
-                                 const openvdb::FloatGrid& result) {
-    auto source = openvdb::Vec3IGrid::create(openvdb::Vec3i(0));
-    source->setName("source");
-    auto exemplar = openvdb::Int32Grid::create(0);
-    exemplar->setName("exemplar");
-    for (const GridPtr& grid : {GridPtr(source), GridPtr(exemplar)}) {
-        grid->setTransform(result.transform().copy());
-        grid->insertMeta("vdbsynth:map:exemplar_hash", openvdb::StringMetadata(map.exemplars.front().hash));
-    }
-    for (const MappedVoxel& voxel : voxels) {
-        const Index3& from = voxel.from.voxel;
-        source->tree().setValueOn(toCoord(voxel.to), openvdb::Vec3i(from.x, from.y, from.z));
-        exemplar->tree().setValueOn(toCoord(voxel.to), 0);
-    }
-    return {source, exemplar};
+// A hole as a map has it.
+MappedHole holeOf(const openvdb::FloatGrid& hole, const RunContext& ctx) {
+    const IndexBox box = solidBox(hole, "the hole").expanded(int(kHalfWidth) + 2);
+    requireMemory(ctx, double(box.volume()) * 4, "the hole", "use a smaller one");
+    MappedHole mapped;
+    mapped.corner = box.min;
+    mapped.distance = gatherBricks(hole, box, float(1 / voxelSizeOf(hole)), kHalfWidth, ctx);
+    return mapped;
 }
 
 // The mesh that a model was made from, in its voxels.
@@ -280,12 +169,17 @@ namespace {
 
 FillResult filledHoles(const LevelSet& partial, const LevelSet& hole, const LevelSet* exemplar,
                        const FillOptions& options, const RunContext& ctx) {
-    const openvdb::FloatGrid::Ptr holeGrid = inVoxelsOf(*partial.grid, hole);
+    SourceMap map;
+    map.method = MapMethod::Fill;
+    map.hole = holeOf(*inVoxelsOf(*partial.grid, hole), ctx);
+    map.hole.fromSelf = exemplar == nullptr;
+    // As the map's reader has it, so that a repetition sees the same.
+    const FloatGridPtr holeGrid = holeGridOf(map.hole, *partial.grid, ctx);
     const IndexBox holeBox = solidBox(*holeGrid, "the hole");
     const LevelSet& from = exemplar ? *exemplar : partial;
-    const IndexBox fromBox = from.domain.expanded(from.domainRecorded ? 0 : int(kBand));
+    const IndexBox fromBox = from.domain.expanded(from.domainRecorded ? 0 : int(kFillBand));
     const int block = options.block > 0 ? options.block : 16;
-    const IndexBox box = atLeast(holeBox.expanded(int(kBand) + block), 4 * block);
+    const IndexBox box = atLeast(holeBox.expanded(int(kFillBand) + block), 4 * block);
     if (double(fromBox.volume()) > kMostVoxels)
         throw Error(ErrorCode::Unusable,
                     "the exemplar's box of " + boxText(fromBox) + " is too large to fill from; crop it");
@@ -304,42 +198,34 @@ FillResult filledHoles(const LevelSet& partial, const LevelSet& hole, const Leve
     if (synthesis.guessed && options.levels == 0) synthesis.levels = 1;
     if (synthesis.guessed && options.block == 0) synthesis.block = kGuessedBlock;
     markOpen(around, synthesis.guessed, ctx);
-    std::shared_ptr<const BrickField> field;
-    BrickField mask;
+    SelfExemplar self;
+    BrickField field;
+    MappedExemplar mapped{fromBox, from.domain, levelSetHash(*from.grid), {}, transformOf(*from.grid)};
     if (exemplar) {
-        field = std::make_shared<const BrickField>(
-            widenBand(*from.grid, fromBox, from.domainRecorded ? kAllCut : CutFaces{}, kBand, ctx));
+        mapped.cut = from.domainRecorded ? kAllCut : CutFaces{};
+        field = fillExemplar(from, fromBox, mapped.cut, ctx);
     } else {
-        Surroundings all = surroundingsOf(partial, *holeGrid, fromBox, ctx);
-        markOpen(all, synthesis.guessed, ctx);
-        mask = BrickField::generate(all.open.box(), ctx, [&](const IndexBox& brick, float* samples) {
-            all.open.readBox(brick.min, brick.size(), samples);
-            for (int i = 0; i < BrickField::kSamples; ++i) samples[i] = 1 - samples[i];
-        });
-        synthesis.masks = {&mask};
-        field = std::make_shared<const BrickField>(all.known);
+        self = selfExemplar(partial, *holeGrid, fromBox, synthesis.guessed, ctx);
+        synthesis.masks = {&self.mask};
+        field = std::move(self.field);
+        mapped.box = self.box;
     }
+    map.exemplars = {mapped};
     stage.advance();
-    BlockSynthesisResult filled = optimizeTexture({field}, synthesis, ctx);
-    const FloatGridPtr rebuilt =
-        closeAndRebuild(joined(around, filled.field, ctx), around.box.min, around.cut, kHalfWidth,
-                        *partial.grid, "the filled model", ctx);
-    FillResult result;
-    result.model = partial;
-    result.model.grid = replacedAround(*partial.grid, *holeGrid, holeBox, *rebuilt);
-    result.stats = filled.stats;
-    SourceMap map;
+    BlockSynthesisResult filled =
+        optimizeTexture({std::make_shared<const BrickField>(std::move(field))}, synthesis, ctx);
+    map.hole.guessed = synthesis.guessed;
     map.patches = std::move(filled.map);
+    map.matched = filled.stats.block;
     map.targetBox = map.targetDomain = around.box;
-    map.exemplars = {{fromBox, from.domain, levelSetHash(*from.grid)}};
-    const std::vector<MappedVoxel> copied = copiedVoxels(map, *result.model.grid, *holeGrid);
-    result.sources = sourceGrids(copied, map, *result.model.grid);
-    std::vector<GridPtr> kept;
-    for (const GridPtr& grid : partial.carried)
-        if (!isOfSourceMap(grid->getName())) kept.push_back(grid->deepCopyGrid());
-    result.model.carried = carryToVoxels(copied, {&from}, *result.model.grid, std::move(kept), ctx);
-    if (!partial.domainRecorded) result.model.domain = solidBox(*result.model.grid, "the filled model");
-    stampLevelSet(result.model);
+    map.cut = around.cut;
+    map.band = kFillBand;
+    map.voxelSize = voxelSizeOf(*from.grid);
+    map.target = {levelSetHash(*partial.grid), voxelSizeOf(*partial.grid), partial.domainRecorded};
+    FillResult result;
+    result.stats = filled.stats;
+    result.model = fillThroughMap(map, around, filled.field, partial, *holeGrid, from, ctx);
+    result.map = std::move(map);
     return result;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
-#include "libvdbsynth/synth/block_synthesis.h"
+#include "libvdbsynth/map/source_map.h"
+#include "libvdbsynth/synth/synthesis_options.h"
 #include "libvdbsynth/vdb/level_set.h"
 
 #include <vector>
@@ -20,9 +21,7 @@ void validate(const FillOptions& options, const LevelSet& partial, const LevelSe
 
 struct FillResult {
     LevelSet model;
-    /// `source` Vec3I and `exemplar` Int32 on the band inside the hole: the voxel of the exemplar that had
-    /// the most say. There is no map to repeat: the rest of the model is not in it.
-    std::vector<GridPtr> sources;
+    SourceMap map;  ///< what repeatMap (repeat.h) reads the result through; has the hole
     BlockSynthesisStats stats;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "libvdbsynth/analogy/filter_analogy.h"
+#include "libvdbsynth/analogy/analogy_options.h"
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/vdb/vdb_fwd.h"
 

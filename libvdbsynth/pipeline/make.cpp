@@ -4,7 +4,7 @@
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/pipeline/analogy.h"
-#include "libvdbsynth/pipeline/field_model.h"
+#include "libvdbsynth/pipeline/field_model_steps.h"
 #include "libvdbsynth/procedural/analogy_pair.h"
 
 #include <openvdb/openvdb.h>

@@ -7,7 +7,7 @@
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/point_file.h"
 #include "libvdbsynth/io/raster_file.h"
-#include "libvdbsynth/pipeline/field_model.h"
+#include "libvdbsynth/pipeline/field_model_steps.h"
 #include "libvdbsynth/vdb/mesh_conversion.h"
 #include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/vdb_file.h"
@@ -16,7 +16,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <memory>
 
@@ -41,10 +40,10 @@ double chooseVoxelSize(const std::string& path, const std::vector<Vec3f>& points
     if (options.voxelSize > 0) return options.voxelSize;
     const int resolution = options.resolution > 0 ? options.resolution : kDefaultResolution;
     const double voxelSize = longestSide(path, points) / resolution;
-    char text[128];
-    std::snprintf(text, sizeof text, ": voxel size %.6g (%d voxels along the longest side%s)", voxelSize,
-                  resolution, options.resolution > 0 ? "" : "; `resolution` or `voxelSize` sets it");
-    message(ctx, options.resolution > 0 ? MessageLevel::Detail : MessageLevel::Note, path + text);
+    message(ctx, options.resolution > 0 ? MessageLevel::Detail : MessageLevel::Note,
+            path + ": voxel size " + roundedText(voxelSize, 6) + " (" + std::to_string(resolution) +
+                " voxels along the longest side" +
+                (options.resolution > 0 ? ")" : "; `resolution` or `voxelSize` sets it)"));
     return voxelSize;
 }
 
@@ -103,9 +102,8 @@ LevelSet atVoxelSize(const std::string& path, const LevelSet& model, const Model
                               ? present * std::max({size.x, size.y, size.z}) / options.resolution
                               : present;
     if (std::abs(wanted - present) <= 1e-6 * present) return model;
-    char text[128];
-    std::snprintf(text, sizeof text, ": resampled from voxels of %.6g to %.6g", present, wanted);
-    message(ctx, MessageLevel::Note, path + text);
+    message(ctx, MessageLevel::Note,
+            path + ": resampled from voxels of " + roundedText(present, 6) + " to " + roundedText(wanted, 6));
     return resampled(model, wanted, ctx);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
-#include "libvdbsynth/grid/raster_field.h"
+#include "libvdbsynth/grid/raster_options.h"
 #include "libvdbsynth/vdb/level_set.h"
 #include "libvdbsynth/vdb/mesh_conversion.h"
 

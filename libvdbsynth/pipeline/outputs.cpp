@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
 namespace vdbsynth {
@@ -55,10 +54,9 @@ void writeHeights(const LevelSet& model, const std::string& path, const std::str
                     " pixels meet no surface; they are transparent");
     if (extensionOf(path) == "exr") return writeGreyExr(temporary, image.columns, image.rows, image.heights);
     if (options.height > 0) high = float(options.height);
-    char text[96];
-    std::snprintf(text, sizeof text, ": black is a height of %.6g, white one of %.6g (world)", double(low),
-                  double(high));
-    message(ctx, MessageLevel::Note, path + text);
+    message(ctx, MessageLevel::Note,
+            path + ": black is a height of " + roundedText(double(low), 6) + ", white one of " +
+                roundedText(double(high), 6) + " (world)");
     for (float& height : image.heights) height = high > low ? (height - low) / (high - low) : 0;
     writeGreyPng(temporary, image.columns, image.rows, image.heights);
 }

@@ -132,8 +132,10 @@ void addExemplars(const LevelSets& exemplars, const SynthOptions& options, Synth
                             std::to_string(first));
         map.exemplars.push_back(other);
     }
-    for (std::size_t e = 0; e < exemplars.size(); ++e)
+    for (std::size_t e = 0; e < exemplars.size(); ++e) {
         map.exemplars[e].hash = levelSetHash(*exemplars[e]->grid);
+        map.exemplars[e].transform = transformOf(*exemplars[e]->grid);
+    }
 }
 
 }  // namespace
@@ -216,6 +218,8 @@ void requireRoom(const RunContext& ctx, const SourceMap& map, const LevelSets& e
         active += double(exemplars[e]->grid->activeVoxelCount());
         volume += double(map.exemplars[e].box.volume());
     }
+    // A brick costs eight bytes where it has one value.
+    variants += volume / 1024;
     for (const ExemplarVariant& variant : map.variants)
         variants += double(variant.size.x) * double(variant.size.y) * double(variant.size.z);
     const double growth = double(map.targetBox.volume()) / std::max(volume, 1.0);

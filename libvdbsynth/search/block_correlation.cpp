@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/grid/pyramid.h"
+#include "libvdbsynth/math/trigonometry.h"
 #include "libvdbsynth/search/block_cost.h"
 
 #include <algorithm>
@@ -276,7 +277,7 @@ void BlockCorrelation::costs(const BlockQuery& first, const BlockQuery* second, 
 
 double BlockCorrelation::work(const Index3& exemplar) {
     const double samples = volume(transformSize(exemplar));
-    return 5 * samples * std::log2(samples) * 2 / 3;
+    return 5 * samples * logarithm2(samples) * 2 / 3;
 }
 
 std::size_t BlockCorrelation::memoryBytes() const {

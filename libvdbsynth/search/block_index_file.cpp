@@ -102,6 +102,7 @@ bool readBlockIndex(const std::string& path, BlockIndexData& data) {
     read(file, path, &header, sizeof header);
     if (header.format != kFormat) refuse(path, "is no block index of this version");
     const std::uint64_t size = std::filesystem::file_size(path, ignored), most = size / 2;
+    if (ignored) throw Error(ErrorCode::Io, path + ": cannot be read");
     if (header.nodes == 0 || header.nodes > most || header.members > most || header.groups > most)
         refuse(path, "is truncated");
     BlockIndexData in;

@@ -1,7 +1,8 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/grid/brick_field.h"
-#include "libvdbsynth/grid/patch_map.h"
+#include "libvdbsynth/map/patch_map.h"
+#include "libvdbsynth/synth/synthesis_options.h"
 
 #include <array>
 #include <cstdint>
@@ -11,21 +12,6 @@
 #include <vector>
 
 namespace vdbsynth {
-
-/// What happens at the two faces of the target along an axis that grows.
-enum class Border {
-    Cut,     ///< the texture goes on beyond the face; sources may come from anywhere
-    Object,  ///< within a block of a face only sources at the same distance from the same exemplar face, and
-             ///< those nowhere else
-    Tile     ///< the target goes on at one face as it begins at the other; optimizeTexture only
-};
-
-/// How a target is filled.
-enum class SynthesisMethod {
-    Default,  ///< texture optimization (texture_optimization.h)
-    Exact,    ///< blocks in raster order, each the exact best match for what is known, all of them voting
-    Paper     ///< as [lagae2004] has it: random padding, 256 values, octants copied once
-};
 
 struct BlockSynthesisOptions {
     Index3 size{
@@ -64,13 +50,6 @@ struct BlockSynthesisOptions {
     bool paper = false;      ///< synthesizeBlocks as the paper has it; the block is then a power of two
 };
 
-struct BlockSynthesisStats {
-    int block = 0, levels = 0;
-    std::uint64_t matches = 0, nodes = 0, exact = 0;
-    double meanCost = 0;           ///< of the last pass's matches [voxels^2]
-    std::uint64_t indexBytes = 0;  ///< of the largest pass
-};
-
 struct BlockSynthesisResult {
     BrickField field;  ///< distances [voxels], the vote of all matched blocks; not yet a valid distance field
     PatchMap map;
@@ -103,7 +82,7 @@ void validate(const BlockSynthesisOptions& options,
 /// where the paper pads with random samples); later ones also the upsampled result of the pass before. Blocks
 /// on one diagonal plane of the lattice do not depend on each other and are matched in parallel; the result
 /// is that of the raster order. Where the paper copies octants and smooths the mesh, the result here is the
-/// vote of all blocks that cover a sample (grid/patch_map.h): neighbours were matched to agree where they
+/// vote of all blocks that cover a sample (map/patch_map.h): neighbours were matched to agree where they
 /// overlap, so their weighted mean has no seams. The first block of the first pass is drawn from ctx.seed;
 /// equal costs go to the lowest position.
 ///

@@ -1,6 +1,6 @@
 #pragma once
 #include "libvdbsynth/grid/brick_field.h"
-#include "libvdbsynth/grid/patch_map.h"
+#include "libvdbsynth/map/patch_map.h"
 #include "libvdbsynth/synth/synthesis_passes.h"
 
 namespace vdbsynth {

@@ -1,7 +1,7 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/grid/dense_field.h"
-#include "libvdbsynth/grid/patch_map.h"
+#include "libvdbsynth/map/patch_map.h"
 #include "libvdbsynth/synth/guidance.h"
 #include "libvdbsynth/synth/synthesis_passes.h"
 

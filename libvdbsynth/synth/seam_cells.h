@@ -1,7 +1,7 @@
 #pragma once
 #include "libvdbsynth/grid/brick_field.h"
 #include "libvdbsynth/grid/dense_field.h"
-#include "libvdbsynth/grid/patch_map.h"
+#include "libvdbsynth/map/patch_map.h"
 
 #include <cstddef>
 #include <cstdint>

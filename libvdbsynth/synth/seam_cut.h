@@ -8,12 +8,23 @@ namespace vdbsynth {
 /// do not agree is a surface that no exemplar has; a cut leaves each side as it is and runs where both look
 /// alike.
 ///
-/// Costs, with distances clamped to 1.5 voxels, so that a wall that one has and the other has not counts
-/// alike wherever the cut crosses it: between neighbouring cells p and q that copy by shifts a and b, the sum
-/// over the voxels of both of |E(x + a) - E(x + b)|; and at each cell a fifth of the sum of |E(x + a) -
-/// F(x)|, which holds on to what the patches were matched to. Each shift in turn takes what cells it wants of
-/// those that its patches cover, by a minimum cut; shifts that cannot meet do so at once. A shift takes no
-/// more cells once it has the options' `longestRun` of its exemplar's cells with a surface.
+/// A cell c of 2^3 voxels takes a shift s_c: it copies E_s(x + s), E_s being the shift's exemplar. All values
+/// are clamped to +-1.5 voxels, so that a wall that one side has and the other has not costs the same
+/// wherever a seam crosses it, and counted in 64ths of a voxel. What the shifts are to make small:
+///
+///     sum_c D(c, s_c) + sum_(c,d) V(c, d, s_c, s_d),  (c, d) all pairs of cells that share a face
+///     D(c, s)       = sum over x in c of |E_s(x + s) - F(x)|
+///     V(c, d, a, b) = w sum over x in c and d of |E_a(x + a) - E_b(x + b)|,  0 where a = b
+///
+/// w is 1, and 16 (kAbove) for pairs along an axis that does not grow, along which everything keeps its
+/// place. Of a cell that lies beyond an exemplar's end V counts the most that there can be, 2 * 1.5 voxels a
+/// voxel.
+///
+/// Each shift in turn takes those of the cells inside its patches that lower the sum, by a minimum cut;
+/// shifts whose cells do not touch do so at once. This is one round of expansions, not the minimum. The
+/// options' `longestRun` limits how many of its exemplar's cells with a surface a shift takes, those nearest
+/// to its middle first; of a shift that has more from the beginning, each cell too many costs 1500 / 64
+/// voxels (kTooLong) more until another shift takes it.
 ///
 /// @param map    of the last pass, of a target that neither tiles nor is known in part
 /// @param field  F, what the map's patches were matched to

@@ -12,7 +12,6 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <sstream>
 
 namespace vdbsynth {
 namespace {
@@ -107,28 +106,38 @@ void requireHalfWidth(double halfWidth, const std::string& field) {
 }
 
 std::string boxText(const IndexBox& box) {
-    std::ostringstream text;
-    text << box.min.x << ',' << box.min.y << ',' << box.min.z << ',' << box.max.x << ',' << box.max.y << ','
-         << box.max.z;
-    return text.str();
+    std::string text;
+    for (const Index3& corner : {box.min, box.max})
+        for (int axis = 0; axis < 3; ++axis) text += (text.empty() ? "" : ",") + std::to_string(corner[axis]);
+    return text;
 }
 
 bool parseBox(const std::string& text, IndexBox& box) {
-    int used = 0;
-    IndexBox parsed;
-    if (std::sscanf(text.c_str(), "%d,%d,%d,%d,%d,%d%n", &parsed.min.x, &parsed.min.y, &parsed.min.z,
-                    &parsed.max.x, &parsed.max.y, &parsed.max.z, &used) != 6)
-        return false;
     constexpr int kLimit = 1 << 28;
-    for (int axis = 0; axis < 3; ++axis)
-        if (parsed.min[axis] < -kLimit || parsed.max[axis] > kLimit) return false;
-    if (std::size_t(used) != text.size() || parsed.empty()) return false;
+    IndexBox parsed;
+    std::size_t at = 0;
+    for (int i = 0; i < 6; ++i) {
+        const std::size_t end = i < 5 ? text.find(',', at) : text.size();
+        int& number = i < 3 ? parsed.min[i] : parsed.max[i - 3];
+        if (end == std::string::npos || !parseWhole(std::string_view(text).substr(at, end - at), number))
+            return false;
+        if (number < -kLimit || number > kLimit) return false;
+        at = end + 1;
+    }
+    if (parsed.empty()) return false;
     box = parsed;
     return true;
 }
 
 double voxelSizeOf(const openvdb::FloatGrid& grid) {
     return grid.voxelSize()[0];
+}
+
+Affine transformOf(const openvdb::FloatGrid& grid) {
+    const openvdb::Mat4d matrix = grid.transform().baseMap()->getAffineMap()->getMat4();
+    Affine transform;
+    std::copy_n(matrix.asPointer(), transform.size(), transform.begin());
+    return transform;
 }
 
 IndexBox solidBox(const openvdb::FloatGrid& grid, const std::string& what) {
@@ -183,11 +192,28 @@ std::string levelSetHash(const openvdb::FloatGrid& grid) {
     std::uint64_t hash[2] = {1, 2};
     for (const Leaf* leaf : leavesOf(grid)) {
         const openvdb::Coord origin = leaf->origin();
+        std::uint64_t active[Leaf::SIZE / 64];
+        for (openvdb::Index word = 0; word < Leaf::SIZE / 64; ++word)
+            active[word] = leaf->getValueMask().getWord<std::uint64_t>(word);
         for (std::uint64_t& h : hash) {
             h = hash64(&origin, sizeof origin, h);
             h = hash64(leaf->buffer().data(), Leaf::SIZE * sizeof(float), h);
+            h = hash64(active, sizeof active, h);
         }
     }
+    const float background = grid.background();
+    openvdb::FloatTree::ValueAllCIter tile = grid.tree().cbeginValueAll();
+    tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile) {
+        // What a tree keeps nothing for may or may not have a place in its nodes.
+        if (!tile.isValueOn() && *tile == background) continue;
+        const openvdb::CoordBBox box = tile.getBoundingBox();
+        const std::int32_t place[7] = {box.min().x(), box.min().y(), box.min().z(),   box.max().x(),
+                                       box.max().y(), box.max().z(), tile.isValueOn()};
+        const float value = *tile;
+        for (std::uint64_t& h : hash) h = hash64(&value, sizeof value, hash64(place, sizeof place, h));
+    }
+    for (std::uint64_t& h : hash) h = hash64(&background, sizeof background, h);
     const openvdb::Mat4d matrix = grid.transform().baseMap()->getAffineMap()->getMat4();
     for (std::uint64_t& h : hash) h = hash64(matrix.asPointer(), 16 * sizeof(double), h);
     char text[33];

@@ -1,6 +1,7 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/geometry/mesh.h"
+#include "libvdbsynth/math/affine.h"
 #include "libvdbsynth/math/index_box.h"
 #include "libvdbsynth/math/vec3.h"
 #include "libvdbsynth/vdb/vdb_fwd.h"
@@ -40,11 +41,13 @@ void requireBox(const IndexBox& box, const std::string& field);
 void requireHalfWidth(double halfWidth, const std::string& field = "halfWidth");
 
 std::string boxText(const IndexBox& box);
-/// Parses `i,j,k,I,J,K`. @return false if it is not six whole numbers with every minimum <= its maximum
+/// Parses `i,j,k,I,J,K`. @return false if it is not just six whole numbers within 2^28, min <= max
 bool parseBox(const std::string& text, IndexBox& box);
 
 /// [world] length of a voxel side.
 double voxelSizeOf(const openvdb::FloatGrid& grid);
+/// From index space to the world.
+Affine transformOf(const openvdb::FloatGrid& grid);
 /// Box of the solid: the voxels with a negative value.
 /// @throw Error EmptyInput "WHAT has no inside ..."
 IndexBox solidBox(const openvdb::FloatGrid& grid, const std::string& what);
@@ -57,7 +60,7 @@ double halfWidthOf(const openvdb::FloatGrid& grid);
 std::size_t activeVoxels(const openvdb::FloatGrid& grid);
 /// Sets name, class and the domain's metadata.
 void stampLevelSet(LevelSet& levelSet);
-/// Hash of the values, topology and transform, for the source map.
+/// Hash of values, active states (of leaves and tiles), background and transform; not of metadata.
 std::string levelSetHash(const openvdb::FloatGrid& grid);
 
 /// How true to a distance field a level set is, measured on its active voxels within the band.

@@ -3,10 +3,11 @@
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/geometry/point_neighbours.h"
 #include "libvdbsynth/geometry/winding_number.h"
+#include "libvdbsynth/math/trigonometry.h"
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/mesh_conversion.h"
 #include "libvdbsynth/vdb/redistance.h"
-#include "libvdbsynth/vdb/winding_field.h"
+#include "libvdbsynth/vdb/winding_field_steps.h"
 
 #include <openvdb/openvdb.h>
 
@@ -111,7 +112,7 @@ private:
         double sum = 0, total = 0;
         for (std::size_t k = 0; k < found; ++k) {
             // Relative to the nearest, so that far from all the nearest still counts.
-            const double weight = std::exp(-double(squared[k] - squared[0]) / double(spacing * spacing));
+            const double weight = exponential(-double(squared[k] - squared[0]) / double(spacing * spacing));
             sum += weight * double(dot(mCloud.normals[numbers[k]], place - mCloud.points[numbers[k]]));
             total += weight;
         }

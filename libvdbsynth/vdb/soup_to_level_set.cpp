@@ -6,7 +6,7 @@
 #include "libvdbsynth/vdb/mesh_conversion.h"
 #include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/wall.h"
-#include "libvdbsynth/vdb/winding_field.h"
+#include "libvdbsynth/vdb/winding_field_steps.h"
 
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>

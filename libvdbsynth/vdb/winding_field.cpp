@@ -1,4 +1,4 @@
-#include "libvdbsynth/vdb/winding_field.h"
+#include "libvdbsynth/vdb/winding_field_steps.h"
 
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/vdb/coord.h"

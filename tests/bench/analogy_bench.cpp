@@ -114,7 +114,9 @@ int main(int argc, char** argv) {
             analogyVoxels(VoxelTable::where(*fields.plain, open), pairFrames, 0, true, true, {});
         return voxels;
     }();
-    const AnalogyPyramid made2 = analogyPyramid(made.distance, 2, {}), plain2 = analogyPyramid(*plain, 2, {});
+    const BrickField distance =
+        readAnalogy(made.sources, made.depths, plain->box(), {{fields.textured, {0, 0, 0}, 1}}, *plain);
+    const AnalogyPyramid made2 = analogyPyramid(distance, 2, {}), plain2 = analogyPyramid(*plain, 2, {});
     const AnalogyVoxels queryVoxels =
         analogyVoxels(VoxelTable::where(*plain, open), frames, 0, true, true, {});
     const std::size_t length = shape.size();
@@ -143,12 +145,13 @@ int main(int argc, char** argv) {
     }
     std::vector<std::size_t> sourceOf(queryVoxels.table.size(), made.sources.size());
     for (std::size_t s = 0; s < made.sources.size(); ++s) {
-        const std::int32_t v = queryVoxels.table.find(made.sources[s].to);
+        const std::int32_t v = queryVoxels.table.find(made.sources.voxels()[s]);
         if (v >= 0) sourceOf[std::size_t(v)] = s;
     }
     for (std::size_t q = 0; q < kCompared; ++q)
         if (sourceOf[voxel[q]] < made.sources.size())
-            copied[q] = training.find(0, made.sources[sourceOf[voxel[q]]].from);
+            // Moved to the target's depth since it was found, by less than a voxel.
+            copied[q] = training.find(0, nearestVoxel(*made.sources.strongest(sourceOf[voxel[q]])));
 
     const Search index = timed(kTimed, [&](std::size_t q) {
         return training.index()

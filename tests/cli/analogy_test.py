@@ -53,6 +53,7 @@ class Analogy(CliTest):
         self.fails(2, "too few inputs", "analogy", "a.vdb", "a2.vdb", "-o", "m.vdb")
         self.fails(2, "an even number of inputs", "analogy", "a.vdb", "a2.vdb", "a.vdb", "b.vdb", "-o", "m.vdb")
         self.fails(2, "--direction", "analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--direction", "axis:w")
+        self.fails(2, "--sweeps 0: must be a whole number from 1 to 10", "analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--sweeps", 0)
         self.fails(2, "--samples", "analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--samples", 4)
         self.fails(2, "--scale", "analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--scale", 100)
         self.fails(2, "takes no direction", "analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--naive", "--direction", "radial")

@@ -10,6 +10,7 @@ endfunction()
 
 add_cli_test(analogy_test Analogy)
 add_cli_test(compare_test Compare Libraries Page)
+add_cli_test(options_test Answers Overwriting Help Moved)
 add_cli_test(path_test Attributes Doors StandardStreams MainPath Determinism Words)
 add_cli_test(error_test BadOptions BadFiles Disk Signals)
 add_cli_test(readme_test Readme)

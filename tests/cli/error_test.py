@@ -29,7 +29,7 @@ class BadOptions(CliTest):
             ("no input", ["convert", "-o", "x.vdb"]),
             ("one input too many", ["convert", "g.vdb", "h.vdb", "-o", "x.vdb"]),
             ("--threads two", ["convert", "g.vdb", "-o", "x.vdb", "--threads", "two"]),
-            ("--seed -1", ["convert", "g.vdb", "-o", "x.vdb", "--seed", "-1"]),
+            ("--seed -1", ["make", "grid", "x.vdb", "--seed", "-1"]),
             ("--max-memory 3", ["convert", "g.vdb", "-o", "x.vdb", "--max-memory", "3"]),
             ("--progress fast", ["convert", "g.vdb", "-o", "x.vdb", "--progress", "fast"]),
             ("--voxel-size 0", ["convert", "g.vdb", "-o", "x.vdb", "--voxel-size", "0"]),
@@ -41,14 +41,18 @@ class BadOptions(CliTest):
             ("--slice q=1", ["render", "g.vdb", "-o", "x.png", "--slice", "q=1"]),
             ("--size 9x9", ["render", "g.vdb", "-o", "x.png", "--size", "9x9"]),
             ("--directions: are drawn on a surface", ["render", "g.vdb", "-o", "x.png", "--directions", "g.vdb", "--slice", "z=0.5"]),
-            ("pictures are .png", ["render", "g.vdb", "-o", "x.jpg"]),
+            ("x.jpg: unknown extension; must be a .png file", ["render", "g.vdb", "-o", "x.jpg"]),
             ("--at: missing", ["match", "g.vdb", "g.vdb"]),
             ("mask blob: unknown kind", ["mask", "blob", "-o", "x.vdb"]),
             ("--box: missing", ["crop", "g.vdb", "-o", "x.vdb"]),
             ("needs a value", ["convert", "g.vdb", "-o"]),
-            ("--exemplar-mask m.png: give a .vdb", ["synth", "g.vdb", "-o", "x.vdb", "--size", "2x,2x,2x",
+            ("--exemplar-mask m.png: must be a .vdb file, or FILE.vdb:GRID", ["synth", "g.vdb", "-o", "x.vdb", "--size", "2x,2x,2x",
                                                          "--exemplar-mask", "m.png"]),
-            ("--mask m.png: give a .vdb", ["match", "g.vdb", "g.vdb", "--at", "0,0,0", "--mask", "m.png"]),
+            ("--mask m.png: must be a .vdb file", ["match", "g.vdb", "g.vdb", "--at", "0,0,0", "--mask", "m.png"]),
+            ("--iso: is no option of make; ", ["make", "grid", "x.vdb", "--iso", "1"]),
+            ("--seed: is no option of render; ", ["render", "g.vdb", "-o", "x.png", "--seed", "1"]),
+            ("--which: is now --exemplar-map", ["synth", "g.vdb", "g.vdb", "-o", "x.vdb", "--size", "2x,2x,2x", "--which", "g.vdb"]),
+            ("--guide-weight 0: must be a number from 0.001 to 1000", ["synth", "g.vdb", "-o", "x.vdb", "--size", "2x,2x,2x", "--guide-weight", 0]),
             ("--view 1e300,0,0", ["render", "g.vdb", "-o", "x.png", "--view", "1e300,0,0"]),
         ]
         for says, words in cases:
@@ -88,7 +92,7 @@ class BadFiles(CliTest):
             (3, "folder.vdb: is a directory", ["convert", "g.vdb", "-o", "folder.vdb"]),
             (3, "no grid \"vote_source\"", ["repeat", "g.vdb", "g.vdb", "-o", "x.vdb"]),
             (3, "config.json: not a JSON object", ["synth", "g.vdb", "-o", "x.vdb", "--config", "config.json"]),
-            (2, "\"blok\" is not an option", ["synth", "g.vdb", "-o", "x.vdb", "--config", "other.json"]),
+            (2, "other.json: blok: unknown option of synth; did you mean block?", ["synth", "g.vdb", "-o", "x.vdb", "--config", "other.json"]),
             (3, "folder.vdb: is a directory", ["synth", "g.vdb", "-o", "x.vdb", "--config", "folder.vdb"]),
             (2, "the same file as", ["convert", "g.vdb", "-o", "x.vdb", "-o", "./x.vdb"]),
             (3, "/dev/null: is not a regular file", ["convert", "g.vdb", "-o", "x.vdb", "--report", "/dev/null"]),
@@ -262,6 +266,27 @@ class Signals(CliTest):
         for name in names:
             self.ok("convert", "b.vdb", "-o", name, "--quiet")
         self.assertFalse([f for f in self.files() if f.endswith(".tmp")])
+
+    def test_process_one(self):
+        """A container's entry point is process 1, which a child without a parent is given to as well."""
+        own = ["unshare", "--user", "--map-root-user", "--pid", "--fork", "--mount-proc"]
+        if not shutil.which("unshare") or subprocess.run([*own, "true"], capture_output=True).returncode:
+            self.skipTest("a namespace of processes cannot be made here")
+        number = subprocess.run([*own, "sh", "-c", "echo $$"], capture_output=True, text=True).stdout
+        self.assertEqual(number, "1\n")
+        result = subprocess.run([*own, PROGRAM, "make", "grid", "g.vdb", "--resolution", "24"], cwd=self.folder,
+                                capture_output=True, text=True, timeout=60)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("g.vdb", self.files())
+        result = subprocess.run([*own, PROGRAM, "info", "none.vdb"], cwd=self.folder, capture_output=True, text=True, timeout=60)
+        self.assertEqual(result.returncode, 3)
+        self.assertIn("none.vdb: no such file", result.stderr)
+
+    def test_a_worker_without_its_parent_ends(self):
+        result = self.run_tool("make", "grid", "g.vdb", "--resolution", 24,
+                               env={**os.environ, "VDBSYNTH_SUPERVISOR_LINE": f"9,{os.getppid()}"})
+        self.assertEqual(result.returncode, 1)
+        self.assertNotIn("g.vdb", self.files())
 
 
 if __name__ == "__main__":

@@ -1,7 +1,12 @@
 """The main path, end to end, and what every output promises."""
 import json
+import os
+import shutil
+import signal
 import subprocess
+import time
 import unittest
+
 
 from support import PROGRAM, SOURCE, CliTest, sample
 
@@ -143,6 +148,48 @@ class StandardStreams(CliTest):
         self.piped(self.read("g.obj"), "convert", "-.obj", "-o", "c.vdb", "--report", "c.json")
         self.assertEqual(json.loads(self.read("c.json"))["options"]["inputs"], ["-.obj"])
         self.assertEqual(self.piped(self.read("g.obj"), "convert", "--config", "c.json").returncode, 0)
+
+    def test_temporaries_are_private(self):
+        """Others write to the folder of temporaries too: no name is known before, and nobody else can look."""
+        shared = self.path("shared")
+        os.mkdir(shared)
+        self.write("precious", "precious")
+        self.ok("make", "grid", "g.vdb", "--resolution", 24)
+        self.ok("convert", "g.vdb", "-o", "g.obj")
+        # Links where the names of old were, for every process number that the worker may get.
+        script = 'for i in $(seq $$ $(($$ + 60))); do for e in in.obj out.ply; do ln -s "$0" "$TMPDIR/vdb_synth.$i.$e"; done; done; exec "$@"'
+        process = subprocess.Popen(["sh", "-c", script, self.path("precious"), PROGRAM, "convert", "-.obj", "-o", "-.ply"], cwd=self.folder,
+                                   stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={**os.environ, "TMPDIR": shared})
+        process.stdin.write(self.read("g.obj")[:100])
+        process.stdin.flush()
+        made, deadline = [], time.time() + 30
+        while not made and time.time() < deadline:
+            made = [os.path.join(at, name) for at, _, names in os.walk(shared) for name in names if not name.endswith((".in.obj", ".out.ply"))]
+            time.sleep(0.05)
+        self.assertTrue(made)
+        for path in made:
+            self.assertEqual(os.stat(path).st_mode & 0o777, 0o600)
+            self.assertEqual(os.stat(os.path.dirname(path)).st_mode & 0o777, 0o700)
+        words = process.communicate(self.read("g.obj")[100:], timeout=60)
+        self.assertEqual(process.returncode, 0, words[1])
+        self.assertTrue(words[0].startswith(b"ply"))
+        self.assertEqual(self.read("precious"), b"precious")
+        self.assertFalse([name for name in os.listdir(shared) if not os.path.islink(os.path.join(shared, name))])
+
+    def test_a_killed_worker_leaves_no_temporaries(self):
+        shared = self.path("shared")
+        os.mkdir(shared)
+        process = subprocess.Popen([PROGRAM, "convert", "-.obj", "-o", "a.vdb"], cwd=self.folder, stdin=subprocess.PIPE,
+                                   stderr=subprocess.DEVNULL, env={**os.environ, "TMPDIR": shared})
+        deadline = time.time() + 30
+        while not any(names for _, _, names in os.walk(shared)) and time.time() < deadline:
+            time.sleep(0.05)
+        self.assertTrue(os.listdir(shared))
+        worker = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True).stdout.split()
+        os.kill(int(worker[0]), signal.SIGKILL)
+        process.wait(timeout=60)
+        process.stdin.close()
+        self.assertEqual(os.listdir(shared), [])
 
     def test_errors(self):
         for content, words, code, says in (
@@ -290,11 +337,44 @@ class Determinism(CliTest):
         self.assertNotEqual(first, self.read("b.vdb"))
 
     def test_metadata_tells_what_made_it(self):
-        self.ok("make", "grid", "g.vdb", "--resolution", 24, "--seed", 3)
-        raw = self.read("g.vdb")
-        for text in (b"vdbsynth:version", b"vdbsynth:options", b"vdbsynth:seed", b"vdbsynth:inputs"):
-            self.assertIn(text, raw)
-        self.assertNotIn(self.folder.encode(), raw)
+        """Every command that writes a VDB, with its inputs in one folder and in another: the same bytes."""
+        self.ok("make", "grid", "g.vdb", "--resolution", 40)
+        self.ok("make", "grooves", "plain.vdb", "textured.vdb", "--resolution", 48)
+        self.ok("mask", "box", "-o", "m.vdb", "--box", "8,0,0,39,39,39")
+        self.ok("synth", "g.vdb", "-o", "map.vdb", "--source-map", "--size", "2x,1x,1x")
+        commands = [
+            (["make", "grid", "OUT", "--resolution", 24, "--seed", 3], []),
+            (["convert", "g.vdb", "-o", "OUT", "--half-width", 4], ["g.vdb"]),
+            (["crop", "g.vdb", "-o", "OUT", "--box", "4,4,4,30,30,30"], ["g.vdb"]),
+            (["mask", "box", "-o", "OUT", "--box", "1,2,3,4,5,6"], []),
+            (["synth", "g.vdb", "-o", "OUT", "--size", "2x,1x,1x", "--exemplar-mask", "m.vdb"], ["g.vdb", "m.vdb"]),
+            (["repeat", "map.vdb", "g.vdb", "-o", "OUT"], ["map.vdb", "g.vdb"]),
+            (["analogy", "plain.vdb", "textured.vdb", "plain.vdb", "-o", "OUT", "--levels", 1], ["plain.vdb", "textured.vdb", "plain.vdb"]),
+        ]
+        for words, inputs in commands:
+            with self.subTest(command=words[0]):
+                written = []
+                for place in ("here", "there/deep"):
+                    os.makedirs(self.path(place), exist_ok=True)
+                    for name in inputs:
+                        shutil.copy(self.path(name), self.path(f"{place}/{name}"))
+                    moved = [f"{place}/out.vdb" if w == "OUT" else self.path(f"{place}/{w}") if w in inputs else w for w in words]
+                    self.ok(*moved)
+                    written.append(self.read(f"{place}/out.vdb"))
+                self.assertEqual(written[0], written[1])
+                self.assertNotIn(self.folder.encode(), written[0])
+                self.assertNotIn(b"here/", written[0])
+                metadata = json.loads(self.ok("info", "here/out.vdb", "--json").stdout)["metadata"]
+                self.assertEqual(metadata["vdbsynth:command"], words[0])
+                self.assertEqual(metadata["vdbsynth:seed"], "3" if words[0] == "make" else "0")
+                self.assertTrue(metadata["vdbsynth:version"])
+                options = json.loads(metadata["vdbsynth:options"])
+                for option in [w for w in words if str(w).startswith("--") and w not in ("--seed", "--exemplar-mask")]:
+                    self.assertIn(option[2:], options)
+                told = json.loads(metadata["vdbsynth:inputs"])
+                self.assertEqual(sorted({i["name"] for i in told}), sorted(set(inputs)))
+                for item in told:
+                    self.assertRegex(item["hash"], "^[0-9a-f]{32}$")
 
 
 class Words(CliTest):

@@ -34,7 +34,7 @@ class Synth(CliTest):
         self.ok("make", "sponge", "a.vdb", "--resolution", 32)
         self.ok("make", "grid", "b.vdb", "--resolution", 32)
         self.ok("mask", "box", "-o", "left.vdb", "--box", "0,0,0,31,63,31")
-        self.ok("synth", "a.vdb", "b.vdb", "-o", "m.vdb", "--size", "2x,2x,1x", "--which", "left.vdb", "--source-map")
+        self.ok("synth", "a.vdb", "b.vdb", "-o", "m.vdb", "--size", "2x,2x,1x", "--exemplar-map", "left.vdb", "--source-map")
         self.assertEqual(self.model("m.vdb")["domain"], "0,0,0,63,63,31")
         self.ok("repeat", "m.vdb", "a.vdb", "b.vdb", "-o", "again.vdb")
         distances = json.loads(self.ok("compare", "m.vdb", "again.vdb", "--json").stdout)["others"][0]["distances"]
@@ -43,7 +43,7 @@ class Synth(CliTest):
         # Inside any model the second; a grid of several by its name.
         self.ok("make", "balls", "ball.vdb", "--resolution", 64, "--feature", 40)
         self.ok("convert", "ball.vdb", "-o", "ball.ply")
-        self.ok("synth", "a.vdb", "b.vdb", "-o", "n.vdb", "--size", "2x,2x,1x", "--which", "ball.ply")
+        self.ok("synth", "a.vdb", "b.vdb", "-o", "n.vdb", "--size", "2x,2x,1x", "--exemplar-map", "ball.ply")
         self.fails(3, "name the one for --guide", "synth", "a.vdb", "-o", "n.vdb", "--size", "2x,2x,1x", "--guide", "m.vdb", "--exemplar-guide", "a.vdb")
         self.ok("synth", "a.vdb", "-o", "n.vdb", "--size", "2x,2x,1x", "--guide", "m.vdb:surface", "--exemplar-guide", "a.vdb", "--guide-weight", 8)
         self.ok("synth", "a.vdb", "-o", "n.vdb", "--size", "2x,2x,1x", "--rotation-map", "ball.vdb", "--source-map")
@@ -51,10 +51,10 @@ class Synth(CliTest):
         distances = json.loads(self.ok("compare", "n.vdb", "again.vdb", "--json").stdout)["others"][0]["distances"]
         self.assertEqual(distances["surface"]["hausdorff"], 0)
         self.fails(1, "give scales from 0.25 to 4", "synth", "a.vdb", "-o", "n.vdb", "--size", "2x,2x,1x", "--scale-map", "ball.vdb")
-        self.fails(2, "give at least two", "synth", "a.vdb", "-o", "n.vdb", "--size", "2x,2x,1x", "--which", "left.vdb")
+        self.fails(2, "give at least two", "synth", "a.vdb", "-o", "n.vdb", "--size", "2x,2x,1x", "--exemplar-map", "left.vdb")
         self.fails(2, "belong together", "synth", "a.vdb", "-o", "n.vdb", "--size", "2x,2x,1x", "--guide", "a.vdb")
         self.fails(2, "once for each exemplar", "synth", "a.vdb", "b.vdb", "-o", "n.vdb", "--size", "2x,2x,1x", "--guide", "a.vdb", "--exemplar-guide", "a.vdb")
-        self.fails(2, "no meaning with --keep", "synth", "--keep", "a.vdb", "--hole", "4,4,4,9,9,9", "-o", "n.vdb", "--which", "left.vdb")
+        self.fails(2, "no meaning with --keep", "synth", "--keep", "a.vdb", "--hole", "4,4,4,9,9,9", "-o", "n.vdb", "--exemplar-map", "left.vdb")
         self.fails(2, "needs --method default", "synth", "a.vdb", "-o", "n.vdb", "--size", "2x,2x,1x", "--rotation-map", "a.vdb", "--draft")
 
     def test_colours_come_along(self):

@@ -1,8 +1,10 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <filesystem>
 
 #include "libvdbsynth/io/mesh_file.h"
+#include "libvdbsynth/io/path.h"
 #include "tests/support/makers.h"
 #include "tests/support/raster_files.h"
 #include "tests/support/temporary_folder.h"
@@ -78,6 +80,46 @@ TEST_CASE("glTF: nodes move, turn and mirror, buffers may be files, strips and f
                                                        R"(,"attributes":{"POSITION":0},"indices":1})",
                                                    "b.bin")))
                   .triangles.size() == 1);
+}
+
+TEST_CASE("glTF: buffers are looked for beside the file, not in the working folder", "[io][regression]") {
+    const test::TemporaryFolder folder;
+    const std::filesystem::path before = std::filesystem::current_path(), root = folder.path("");
+    for (const char* name : {"assets/sub", "work"}) std::filesystem::create_directories(root / name);
+    const std::string moved = test::raw<float>({5, 0, 0, 6, 0, 0, 5, 1, 0}) + std::string("\0\1\2", 3);
+    for (const char* name : {"b.bin", "sub/b.bin", "two words.bin", "a+b.bin", "\xc3\xa9.bin", "100%.bin"}) {
+        folder.write("assets/" + std::string(name), triangleBytes());
+        folder.write("work/" + fileNameOf(name), moved);
+    }
+    folder.write("work/c.bin", moved);
+    folder.write("outside.bin", triangleBytes());
+    const auto read = [&](const std::string& uri) {
+        folder.write("assets/a.gltf", gltf(R"([{"mesh":0}])", kPlain, uri));
+        return test::thrownBy([] {
+            const Mesh mesh = readMesh("../assets/a.gltf");
+            if (mesh.points[0].x != 0) throw Error(ErrorCode::Solver, "that is the other file");
+        });
+    };
+    std::filesystem::current_path(root / "work");
+    for (const char* uri :
+         {"b.bin", "./b.bin", "sub/b.bin", "sub/../b.bin", "sub/%2e%2e/b.bin", "two%20words.bin",
+          "two words.bin", "a+b.bin", "a%2Bb.bin", "%C3%A9.bin", "100%25.bin"}) {
+        CAPTURE(uri);
+        CHECK(read(uri).message == "");
+    }
+    const std::string absolute = (root / "outside.bin").string();
+    for (const std::string& uri :
+         {std::string("../outside.bin"), std::string("%2E%2E/outside.bin"),
+          std::string("sub/../../outside.bin"), absolute, "/" + absolute, std::string("file://") + absolute,
+          std::string("c.bin"), std::string("b.bin%00")}) {
+        const test::Thrown thrown = read(uri);
+        CAPTURE(uri, thrown.message);
+        CHECK(thrown.code == int(ErrorCode::BadData));
+        CHECK(test::contains(thrown.message, "../assets/a.gltf: "));
+        CHECK(
+            test::contains(thrown.message, uri == "c.bin" ? "../assets/c.bin: no such file" : "its file \""));
+    }
+    std::filesystem::current_path(before);
 }
 
 TEST_CASE("glTF: errors name the file and what is wrong", "[io][error]") {

@@ -77,3 +77,19 @@ TEST_CASE("OutputSet: a directory, a missing folder and the same name twice are 
     outputs.add(folder.path("a.txt"));
     CHECK(test::thrownBy([&] { outputs.add(folder.path("a.txt")); }).code == int(ErrorCode::InvalidOption));
 }
+
+TEST_CASE("OutputSet: a path that was reserved and never written keeps its file", "[io][property]") {
+    const test::TemporaryFolder folder;
+    folder.write("old.json", "kept");
+    {
+        OutputSet outputs;
+        outputs.reserve(folder.path("old.json"));
+        outputs.reserve(folder.path("new.json"));
+        std::ofstream(outputs.add(folder.path("written.txt"))) << "written";
+        outputs.commit();
+        CHECK(folder.fileCount() == 2);
+    }
+    CHECK(test::contentOf(folder.path("old.json")) == "kept");
+    CHECK(test::contentOf(folder.path("written.txt")) == "written");
+    CHECK(folder.fileCount() == 2);
+}

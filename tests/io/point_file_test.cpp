@@ -114,6 +114,21 @@ TEST_CASE("readPoints: what is wrong is named", "[io][error]") {
                          "no x, y and z"));
 }
 
+TEST_CASE("readPoints: a PCD whose points times bytes wrap in 64 bits is refused", "[io][regression]") {
+    const test::TemporaryFolder folder;
+    for (const char* points : {"1152921504606846976", "4611686018427387905", "9223372036854775807"})
+        for (const char* data : {"binary", "binary_compressed", "ascii"}) {
+            CAPTURE(points, data);
+            const test::Thrown thrown = reading(folder.write(
+                "w.pcd",
+                std::string(
+                    "FIELDS x y z w\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 1\nHEIGHT 1\nPOINTS ") +
+                    points + "\nDATA " + data + "\n" + std::string(64, '\0')));
+            CHECK(thrown.code == int(ErrorCode::BadData));
+            CHECK(test::contains(thrown.message, "more"));
+        }
+}
+
 TEST_CASE("readPoints: colours of rows and of PCD, and other fields", "[io][oracle]") {
     const test::TemporaryFolder folder;
     const PointFile rows = readPoints(folder.write("a.xyz", "0 0 0 255 51 0\n1 0 0 0 0 255\n"));

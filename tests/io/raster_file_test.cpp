@@ -201,6 +201,41 @@ TEST_CASE("readRaster: errors name the file and what is wrong", "[io][error]") {
               .code == int(ErrorCode::Memory));
 }
 
+TEST_CASE("readRaster: sizes in headers whose product wraps or is no number are refused",
+          "[io][regression]") {
+    const test::TemporaryFolder folder;
+    const auto refused = [&](const std::string& name, const std::string& content) {
+        const test::Thrown thrown = reading(folder.write(name, content), 1000000000);
+        CAPTURE(name, thrown.message);
+        CHECK(thrown.code == int(ErrorCode::BadData));
+        CHECK(test::contains(thrown.message, name));
+    };
+    const std::string bytes(4096, '\1');
+    refused("a.npy", test::npy("<f4", "(1099511627776, 1099511627776, 1099511627776)", bytes));
+    refused("b.npy", test::npy("<f8", "(2147483648, 2147483648, 1)", bytes));
+    for (const char* sides : {"9223372036854775807 2 1", "4294967296 4294967296 1", "-1 -1 1", "-4 4 -4"})
+        refused("c.sgems", sides + std::string("\n1\nv\n") + std::string(4096, '1'));
+    refused("d.inr",
+            "#INRIMAGE-4#{\nXDIM=4294967296\nYDIM=4294967296\nZDIM=1\nTYPE=float\nPIXSIZE=32 bits\n##}\n" +
+                bytes);
+    refused("e.inr", "#INRIMAGE-4#{\nXDIM=-64\nYDIM=-64\nZDIM=1\nTYPE=float\nPIXSIZE=32 bits\n##}\n" + bytes);
+    refused("f.pgm", "P5 4294967296 4294967296 255\n" + bytes);
+    refused("g.pgm", "P5 9223372036854775807 1 255\n" + bytes);
+    for (const char* extent : {"0 1e30 0 -1e30 0 0", "0 nan 0 1 0 1", "-1e30 1e30 0 0 0 0", "5 0 5 0 0 0"})
+        refused("h.vti", test::vti(extent, "", "type=\"UInt8\" format=\"ascii\"", "1 2 3 4"));
+    for (std::int64_t side : {std::int64_t(1) << 62, std::int64_t(-1), INT64_MAX}) {
+        std::string nifti(600, '\0');
+        const auto put = [&](std::size_t at, auto value) { std::memcpy(&nifti[at], &value, sizeof value); };
+        put(0, std::int32_t(540));
+        put(12, std::int16_t(16));
+        for (std::size_t i = 0; i < 8; ++i) put(16 + 8 * i, i == 0 ? std::int64_t(3) : side);
+        put(168, std::int64_t(544));
+        refused("i.nii", nifti);
+        put(40, std::int64_t(0));
+        refused("i.nii", nifti);
+    }
+}
+
 TEST_CASE("readRaster: a TIFF whose pixel size is of another type is read without it", "[io][regression]") {
     const test::TemporaryFolder folder;
     std::string bytes = test::tiff(2, 1, 16, 2, {"abcd"}, "-1", {3, 3, 0});

@@ -6,6 +6,7 @@
 #include "libvdbsynth/measure/occupancy.h"
 #include "libvdbsynth/pipeline/make.h"
 #include "libvdbsynth/vdb/mesh_conversion.h"
+#include "libvdbsynth/vdb/source_map_grids.h"
 #include "tests/support/makers.h"
 
 using namespace vdbsynth;
@@ -66,9 +67,10 @@ TEST_CASE("makeAnalogyModel: hollowing makes a shell of the pair's thickness, a 
     CHECK(band.missingNeighbours == 0);
     CHECK(band.finite);
     CHECK(result.model.domain == target.domain);
-    REQUIRE(result.sources.size() == 3);
-    CHECK(result.sources[0]->getName() == "source");
-    CHECK(result.sources[0]->activeVoxelCount() > activeVoxels(*result.model.grid) / 2);
+    const std::vector<GridPtr> grids = sourceMapGrids(result.map, *result.model.grid);
+    REQUIRE(grids.size() == 4);
+    CHECK(grids[0]->getName() == "source");
+    CHECK(grids[0]->activeVoxelCount() > activeVoxels(*result.model.grid) / 2);
     CHECK(result.reach > 4);
 }
 
@@ -105,7 +107,7 @@ TEST_CASE("makeAnalogyModel: what the textured model carries comes along, direct
     for (auto it = carried->cbeginValueOn(); it; ++it) REQUIRE(it.getValue() == 3.f);
     REQUIRE(result.directions);
     CHECK(result.directions->isType<openvdb::Vec3SGrid>());
-    CHECK(result.sources.size() == 4);  // source_scale too
+    CHECK(sourceMapGrids(result.map, *result.model.grid).size() == 5);  // source_scale too
 }
 
 TEST_CASE("makeAnalogyModel: the same bits for any threads", "[pipeline][tsan]") {

@@ -19,6 +19,7 @@
 #include "libvdbsynth/pipeline/match.h"
 #include "libvdbsynth/pipeline/model.h"
 #include "libvdbsynth/pipeline/outputs.h"
+#include "libvdbsynth/pipeline/repeat.h"
 #include "libvdbsynth/pipeline/synth.h"
 #include "libvdbsynth/vdb/mask.h"
 #include "libvdbsynth/vdb/preview.h"
@@ -128,7 +129,7 @@ TEST_CASE("synthesize: inputs and controls stay as they are", "[pipeline][proper
     watch.add(grid);
     const SynthResult result = synthesize({&balls, &grid}, options);
     CHECK(watch.changed().empty());
-    repeatSynthesis(result.map, {&balls, &grid});
+    repeatMap(result.map, {&balls, &grid});
     CHECK(watch.changed().empty());
 }
 
@@ -148,7 +149,7 @@ TEST_CASE("matchModel, cropModel, withHalfWidth, compareModels, writeModel: inpu
     withHalfWidth(model, 5);
     resampled(model, 1.5);
     CHECK(watch.changed().empty());
-    compareModels({"a", model, nullptr, nullptr}, {{"b", model, nullptr, nullptr}});
+    compareModels({"a", model, {}}, {{"b", model, {}}});
     CHECK(watch.changed().empty());
     const test::TemporaryFolder folder;
     OutputSet outputs;

@@ -3,10 +3,11 @@
 #include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
-#include "libvdbsynth/pipeline/field_model.h"
+#include "libvdbsynth/pipeline/field_model_steps.h"
 #include "libvdbsynth/pipeline/make.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/mesh_conversion.h"
+#include "libvdbsynth/vdb/source_map_grids.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "tests/support/makers.h"
 
@@ -74,12 +75,15 @@ TEST_CASE("fillHoles: what the model carries is kept outside the hole and copied
     auto old = openvdb::Vec3IGrid::create();
     old->setName("source");
     partial.carried = {place, old};
+    partial.source = std::make_shared<const Mesh>();
     const LevelSet hole = boxHole(partial, box);
     const FillResult result = fillHoles(partial, hole, nullptr);
     REQUIRE(result.model.carried.size() == 1);
-    REQUIRE(result.sources.size() == 2);
+    const std::vector<GridPtr> grids = sourceMapGrids(result.map, *result.model.grid);
+    REQUIRE(grids.size() == 5);
+    CHECK(result.model.source == nullptr);  // a mesh that has the hole
     const auto carried = openvdb::gridPtrCast<openvdb::Vec3IGrid>(result.model.carried[0]),
-               source = openvdb::gridPtrCast<openvdb::Vec3IGrid>(result.sources[0]);
+               source = openvdb::gridPtrCast<openvdb::Vec3IGrid>(grids[0]);
     CHECK(source->activeVoxelCount() > 1000);
     std::size_t exact = 0;
     for (auto it = source->cbeginValueOn(); it; ++it) {

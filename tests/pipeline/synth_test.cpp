@@ -5,9 +5,11 @@
 
 #include "libvdbsynth/measure/components.h"
 #include "libvdbsynth/pipeline/make.h"
+#include "libvdbsynth/pipeline/repeat.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/mask.h"
 #include "libvdbsynth/vdb/mesh_conversion.h"
+#include "libvdbsynth/vdb/source_map_grids.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "tests/support/makers.h"
 #include "tests/support/temporary_folder.h"
@@ -132,7 +134,7 @@ TEST_CASE("synthesize: a tiling result fills its domain and goes on at the other
     double inside = 0;
     for (int x = 0; x + 1 < 80; ++x) inside += changes(x, x + 1) / 79.0;
     CHECK(changes(79, 0) < 1.5 * inside);
-    CHECK(levelSetHash(*repeatSynthesis(result.map, exemplar).grid) == levelSetHash(*result.model.grid));
+    CHECK(levelSetHash(*repeatMap(result.map, {&exemplar}).grid) == levelSetHash(*result.model.grid));
     options.method = SynthesisMethod::Exact;
     CHECK(test::contains(test::thrownBy([&] { synthesize(exemplar, options); }).message, "`border` tile"));
 }
@@ -150,37 +152,6 @@ TEST_CASE("synthesize: sizes in voxels, an exemplar box, a mask", "[pipeline][pr
     for (const Index3& source : patches.source) REQUIRE(source.x + patches.block <= 27);
     options.exemplarMask = boxMask({{4, 4, 4}, {6, 6, 6}}, 1);
     CHECK(test::contains(test::thrownBy([&] { synthesize(exemplar, options); }).message, "`exemplarMask`"));
-}
-
-TEST_CASE("repeatSynthesis: the run's own exemplar gives the result back bit for bit, through a file",
-          "[pipeline][property]") {
-    const test::TemporaryFolder folder;
-    const LevelSet exemplar = made("balls");
-    for (bool draft : {false, true}) {
-        SynthOptions options = sized(2, 1.7, 1);
-        options.draft = draft;
-        const SynthResult result = synthesize(exemplar, options);
-        std::vector<GridPtr> grids = sourceMapGrids(result.map, *result.model.grid);
-        CHECK(grids.size() == 4);
-        grids.push_back(result.model.grid);
-        writeVdb(folder.path("m.vdb"), grids, {});
-        const LevelSet again = repeatSynthesis(readSourceMap(folder.path("m.vdb")), exemplar);
-        CHECK(levelSetHash(*again.grid) == levelSetHash(*result.model.grid));
-        CHECK(again.domain == result.model.domain);
-    }
-}
-
-TEST_CASE("repeatSynthesis: a finer exemplar gives the matching finer result", "[pipeline][property]") {
-    const LevelSet exemplar = made("grid", 40, 16, 1);
-    const SynthResult result = synthesize(exemplar, sized(2, 1, 1));
-    openvdb::FloatGrid::Ptr fine = meshToLevelSet(levelSetToMesh(*exemplar.grid), 0.5, 3, "fine");
-    LevelSet finer{fine, {}, false};
-    finer.domain = solidBox(*fine, "fine");
-    const LevelSet again = repeatSynthesis(result.map, finer);
-    CHECK(voxelSizeOf(*again.grid) == Approx(0.5));
-    CHECK(solidVoxels(*again.grid) / 8 == Approx(solidVoxels(*result.model.grid)).epsilon(0.05));
-    const LevelSet coarse = made("grid", 40, 16, 3);
-    CHECK(test::thrownBy([&] { repeatSynthesis(result.map, coarse); }).code == int(ErrorCode::ShapeMismatch));
 }
 
 TEST_CASE("synthesize: what comes with the exemplar is read through the map, and repeated",
@@ -214,7 +185,7 @@ TEST_CASE("synthesize: what comes with the exemplar is read through the map, and
     }
     CHECK(double(exact) > 0.8 * double(all));
     CHECK(double(carried->activeVoxelCount()) > 0.95 * double(all));
-    const LevelSet again = repeatSynthesis(result.map, exemplar);
+    const LevelSet again = repeatMap(result.map, {&exemplar});
     REQUIRE(again.carried.size() == 2);
     CHECK(openvdb::gridPtrCast<openvdb::FloatGrid>(again.carried[0])->activeVoxelCount() ==
           carried->activeVoxelCount());
@@ -251,8 +222,8 @@ TEST_CASE("synthesize: numbers and vectors that come along can be means of all t
         // By hand: no voxel of the ramp is off, so a mean over the voters' own places, where all are active.
         double sum = 0, total = 0;
         bool all = true;
-        for (const VotingSource& source : votingSources(blends.map, {c.x(), c.y(), c.z()})) {
-            const Index3 from = source.from.voxel;
+        for (const Source& source : votingSources(blends.map, {c.x(), c.y(), c.z()})) {
+            const Index3 from = nearestVoxel(source);
             const openvdb::Coord place(from.x, from.y, from.z);
             all = all && ramp->tree().isValueOn(place);
             sum += double(source.weight) * from.x;
@@ -267,7 +238,7 @@ TEST_CASE("synthesize: numbers and vectors that come along can be means of all t
     const auto integers = openvdb::gridPtrCast<openvdb::Int32Grid>(blends.model.carried[2]),
                same = openvdb::gridPtrCast<openvdb::Int32Grid>(copies.model.carried[2]);
     for (auto it = integers->cbeginValueOn(); it; ++it) REQUIRE(*it == same->tree().getValue(it.getCoord()));
-    const LevelSet again = repeatSynthesis(blends.map, {&exemplar}, {}, CarriedValues::Blended);
+    const LevelSet again = repeatMap(blends.map, {&exemplar}, {CarriedValues::Blended, 0});
     const auto repeated = openvdb::gridPtrCast<openvdb::FloatGrid>(again.carried[0]);
     for (auto it = blended->cbeginValueOn(); it; ++it)
         REQUIRE(repeated->tree().getValue(it.getCoord()) == *it);
@@ -288,7 +259,7 @@ GridPtr boxGrid(const IndexBox& box, float inside, float outside = 0) {
 void checkRepeats(const SynthResult& result, const std::vector<const LevelSet*>& exemplars) {
     const test::TemporaryFolder folder;
     writeVdb(folder.path("m.vdb"), sourceMapGrids(result.map, *result.model.grid), {});
-    const LevelSet again = repeatSynthesis(readSourceMap(folder.path("m.vdb")), exemplars);
+    const LevelSet again = repeatMap(readSourceMap(folder.path("m.vdb")), exemplars);
     CHECK(levelSetHash(*again.grid) == levelSetHash(*result.model.grid));
 }
 
@@ -344,7 +315,7 @@ TEST_CASE("synthesize: several exemplars, each where it is asked for, with what 
     for (auto it = mark->cbeginValueOn(); it; ++it)
         if (it.getCoord().x() < 30) REQUIRE(*it == 2.f);
     checkRepeats(result, {&balls, &grid});
-    CHECK(test::thrownBy([&] { repeatSynthesis(result.map, balls); }).code == int(ErrorCode::ShapeMismatch));
+    CHECK(test::thrownBy([&] { repeatMap(result.map, {&balls}); }).code == int(ErrorCode::ShapeMismatch));
     CHECK(test::thrownBy([&] { synthesize(balls, options); }).code == int(ErrorCode::InvalidOption));
     const LevelSet coarse = made("grid", 40, 16, 2);
     CHECK(test::thrownBy([&] {
@@ -432,57 +403,6 @@ TEST_CASE("synthesize: a guide places parts of the exemplar", "[pipeline][proper
     CHECK(double(right) > 0.9 * double(all));
     options.exemplarGuides.clear();
     CHECK(test::thrownBy([&] { synthesize(mixed.model, options); }).code == int(ErrorCode::InvalidOption));
-}
-
-TEST_CASE("sourceMapGrids: on nearly all of the band the result lies where the map says",
-          "[pipeline][property]") {
-    const LevelSet exemplar = made("balls", 48);
-    const SynthResult result = synthesize(exemplar, sized(2, 1, 1));
-    const std::vector<GridPtr> grids = sourceMapGrids(result.map, *result.model.grid);
-    const auto source = openvdb::gridPtrCast<openvdb::Vec3IGrid>(grids[0]);
-    const auto values = exemplar.grid->getConstAccessor();
-    std::size_t near = 0, all = 0;
-    for (auto it = source->cbeginValueOn(); it; ++it) {
-        const float value = result.model.grid->tree().getValue(it.getCoord());
-        if (std::abs(value) > 1) continue;
-        const openvdb::Vec3i from = *it;
-        CHECK(exemplar.domain.contains(Index3{from.x(), from.y(), from.z()}));
-        ++all;
-        if (std::abs(value - values.getValue({from.x(), from.y(), from.z()})) < 0.5f) ++near;
-    }
-    CHECK(double(near) / double(all) > 0.6);
-}
-
-TEST_CASE("readSourceMap: files without a map and broken maps are refused", "[pipeline][error]") {
-    const test::TemporaryFolder folder;
-    const LevelSet exemplar = made("grid");
-    writeVdb(folder.path("a.vdb"), {exemplar.grid}, {});
-    CHECK(test::contains(test::thrownBy([&] { readSourceMap(folder.path("a.vdb")); }).message,
-                         "no grid \"vote_source\""));
-    const SynthResult result = synthesize(exemplar, sized(2, 1, 1));
-    const std::vector<GridPtr> grids = sourceMapGrids(result.map, *result.model.grid);
-    for (const char* name : {"patch", "stride", "overhang", "kernel", "cut", "exemplar_box", "target_box",
-                             "band", "voxel_size"}) {
-        INFO(name);
-        const GridPtr broken = grids[2]->deepCopyGrid();
-        broken->insertMeta(std::string("vdbsynth:map:") + name, openvdb::StringMetadata("-7"));
-        writeVdb(folder.path("b.vdb"), {broken}, {});
-        CHECK(test::thrownBy([&] { readSourceMap(folder.path("b.vdb")); }).code == int(ErrorCode::BadData));
-    }
-    for (const auto& [name, value] : {std::pair<const char*, const char*>{"variants", "0,0,0,9,1,40,40;"},
-                                      {"variants", "7,0,0,0,1,40,40,40;"},
-                                      {"exemplars", "2"}}) {
-        INFO(name << value);
-        const GridPtr broken = grids[2]->deepCopyGrid();
-        broken->insertMeta(std::string("vdbsynth:map:") + name, openvdb::StringMetadata(value));
-        writeVdb(folder.path("b.vdb"), {broken}, {});
-        CHECK(test::thrownBy([&] { readSourceMap(folder.path("b.vdb")); }).code == int(ErrorCode::BadData));
-    }
-    const auto outside = openvdb::gridPtrCast<openvdb::Vec3IGrid>(grids[2]->deepCopyGrid());
-    outside->tree().setValueOn({0, 0, 0}, openvdb::Vec3i(100000, 0, 0));
-    writeVdb(folder.path("c.vdb"), {outside}, {});
-    CHECK(test::contains(test::thrownBy([&] { readSourceMap(folder.path("c.vdb")); }).message,
-                         "outside the exemplar"));
 }
 
 TEST_CASE("synthesize: same bits for any number of threads", "[pipeline][determinism]") {

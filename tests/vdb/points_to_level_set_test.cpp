@@ -73,11 +73,9 @@ TEST_CASE("pointsToSolid: a scan from one side is said to be one, a shell is mad
     ctx.onMessage = [&](MessageLevel level, const std::string& text) {
         if (level == MessageLevel::Warning) said += text;
     };
-    try {
-        pointsToSolid(plane, 0.5, 3, "plane.xyz", {}, ctx);
-    } catch (const Error& error) {
-        CHECK(error.code() == ErrorCode::EmptyInput);  // nothing need be enclosed
-    }
+    // Nothing is enclosed.
+    CHECK(test::thrownBy([&] { pointsToSolid(plane, 0.5, 3, "plane.xyz", {}, ctx); }).code ==
+          int(ErrorCode::EmptyInput));
     CHECK(test::contains(said, "`open` shell"));
     SolidOptions shell;
     shell.open = OpenMesh::Shell;

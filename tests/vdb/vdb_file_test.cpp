@@ -9,6 +9,7 @@
 
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/mesh_conversion.h"
+#include "tests/support/comma_locale.h"
 #include "tests/support/makers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -43,6 +44,32 @@ test::Thrown reading(const std::string& path, const VdbReadOptions& options = {}
 }
 
 }  // namespace
+
+TEST_CASE("writeVdb: a host with a decimal comma writes the same bytes and reads them back",
+          "[vdb][property]") {
+    const test::TemporaryFolder folder;
+    LevelSet model;
+    model.grid = ball(0.05, "surface");
+    model.domain = {{-1234, -1000, -5}, {1234, 1000, 5}};
+    model.domainRecorded = true;
+    stampLevelSet(model);
+    model.grid->insertMeta("weight", openvdb::DoubleMetadata(1234.5));
+    const auto write = [&](const char* name) {
+        writeVdb(folder.path(name), {model.grid}, {{"key", "1234.5"}});
+        return test::contentOf(folder.path(name));
+    };
+    const std::string bytes = write("a.vdb");
+    const test::CommaLocale host;
+    if (!host.changesC()) WARN("no C locale with a decimal comma could be made here: only C++'s is tested");
+    stampLevelSet(model);
+    CHECK(write("b.vdb") == bytes);
+    const LevelSet back = readVdbModel(folder.path("a.vdb"));
+    CHECK(back.domainRecorded);
+    CHECK(back.domain == model.domain);
+    CHECK(levelSetHash(*back.grid) == levelSetHash(*model.grid));
+    const VdbContents contents = readVdb(folder.path("a.vdb"));
+    CHECK(contents.metadata == VdbMetadata{{"key", "1234.5"}});
+}
 
 TEST_CASE("writeVdb: equal grids give equal bytes, different ones different UUIDs", "[vdb][determinism]") {
     const test::TemporaryFolder folder;

@@ -9,8 +9,9 @@ import sys
 BELOW = {}
 for room, direct in [
     ("base", []), ("math", ["base"]), ("geometry", ["math"]), ("grid", ["geometry"]),
-    ("io", ["geometry", "grid"]), ("vdb", ["io"]), ("procedural", ["grid"]), ("surface", ["grid"]), ("search", ["grid", "io"]),
-    ("synth", ["search", "grid"]), ("analogy", ["search", "surface", "grid"]), ("measure", ["synth"]), ("pipeline", ["measure", "synth", "analogy", "procedural", "vdb", "io"]), ("tools", ["pipeline"]),
+    ("map", ["grid"]),
+    ("io", ["geometry", "grid"]), ("vdb", ["io", "map"]), ("procedural", ["grid"]), ("surface", ["grid"]), ("search", ["grid", "io"]),
+    ("synth", ["search", "map"]), ("analogy", ["search", "surface", "map"]), ("measure", ["synth"]), ("pipeline", ["measure", "synth", "analogy", "procedural", "vdb", "io"]), ("tools", ["pipeline"]),
 ]:
     BELOW[room] = {room}.union(*[BELOW[d] for d in direct]) if direct else {room}
 
@@ -21,9 +22,52 @@ ALLOWED = {
 }
 ONE_FILE = {"png.h", "zlib.h", "nanoflann.hpp", "flann/", "tiny_obj_loader.h", "tiffio.h", "jpeglib.h", "Imf", "pugixml.hpp", "tiny_gltf.h", "xxhash.h", "boost/graph/", "boost/program_options"}
 
+# The C library's own, of which the last bit differs between processors: results are to be the same everywhere.
+# Rounded exactly, and so allowed: sqrt, floor, ceil, round, fmod, ldexp, frexp and the like.
+INEXACT = re.compile(r"(?<![\w.>])(?:std::)?((?:sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh|asinh|acosh|atanh|exp|exp2|expm1|log|log2"
+                     r"|log10|log1p|pow|hypot|cbrt|erf|erfc|tgamma|lgamma)[fl]?|polar|sincos)\(|\b(computeDirect)\(")
+INEXACT_ALLOWED = {
+    "libvdbsynth/math/line_transform.cpp": "names them for kissfft, and asks math/trigonometry",
+}
+
+
+def inexact(root):
+    """Calls of such functions in the library."""
+    found = []
+    for path in sorted([*root.glob("libvdbsynth/**/*.h"), *root.glob("libvdbsynth/**/*.cpp")]):
+        relative = str(path.relative_to(root))
+        if relative in INEXACT_ALLOWED:
+            continue
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            match = INEXACT.search(re.sub(r'//.*|"(\\.|[^"\\])*"', "", line))
+            if match:
+                found.append(f"{relative}:{number}: {match.group(1) or match.group(2)} gives other bits elsewhere; use math/trigonometry")
+    return found
+
+
+MOST_PUBLIC = 36
+
+
+def public_breaches(root):
+    """What is installed is small, and complete in itself."""
+    text = (root / "libvdbsynth" / "public_headers.cmake").read_text()
+    public = set(re.findall(r"^  (\S+\.h)$", text, re.M))
+    breaches = []
+    if len(public) > MOST_PUBLIC:
+        breaches.append(f"libvdbsynth/public_headers.cmake: {len(public)} headers; keep steps and internals inside")
+    for header in sorted(public):
+        path = root / "libvdbsynth" / header
+        if not path.exists():
+            breaches.append(f"libvdbsynth/public_headers.cmake: {header} does not exist")
+            continue
+        for include in re.findall(r'#include "libvdbsynth/([^"]+)"', path.read_text()):
+            if include not in public:
+                breaches.append(f"libvdbsynth/{header}: is public and includes {include}, which is not")
+    return breaches
+
 
 def main(root):
-    breaches = []
+    breaches = inexact(root)
     users = {}
     for path in sorted([*root.glob("libvdbsynth/**/*.h"), *root.glob("libvdbsynth/**/*.cpp"),
                         *root.glob("tools/vdb_synth/*.h"), *root.glob("tools/vdb_synth/*.cpp")]):
@@ -67,6 +111,7 @@ def main(root):
         for number, line in enumerate(path.read_text().splitlines(), 1):
             if not line.lstrip().startswith("//") and any(flag.search(text) for text in literal.findall(line)):
                 breaches.append(f"{path.relative_to(root)}:{number}: names a flag; name the field in backquotes")
+    breaches += public_breaches(root)
     print("\n".join(breaches) if breaches else "the stairs hold")
     return 1 if breaches else 0
 

@@ -5,20 +5,15 @@
 
 namespace vdbsynth::cli {
 
-std::vector<Option> carryOptions() {
-    return {{"carry", "NAMES",
-             "which attributes and grids of the exemplar come along: all (default), or names with commas"},
-            {"carry-blend", "",
-             "numbers and vectors that come along are means over all that had a say, not copies"}};
-}
-
 void keepCarried(const Arguments& arguments, std::vector<LevelSet>& exemplars) {
-    const std::string text = arguments.text("carry", "all");
+    const std::string text = arguments.text("carry");
     if (text == "all") return;
     for (const std::string& name : splitAtCommas(text)) {
         bool found = false;
         for (const LevelSet& exemplar : exemplars) found = found || carries(exemplar, name);
-        requireOption(found, "carry", name, "all, or names of what comes with the exemplar");
+        if (!found)
+            throw Error(ErrorCode::InvalidOption,
+                        "--carry " + name + ": must be all, or names of what comes with the exemplar");
     }
     for (LevelSet& exemplar : exemplars) keepCarriedNames(exemplar, splitAtCommas(text));
 }

@@ -6,9 +6,6 @@
 
 namespace vdbsynth::cli {
 
-/// --carry and --carry-blend: what comes along with exemplars, and how.
-std::vector<Option> carryOptions();
-
 /// Leaves behind what --carry does not name. @throw Error InvalidOption (a name that no exemplar carries)
 void keepCarried(const Arguments& arguments, std::vector<LevelSet>& exemplars);
 

@@ -4,6 +4,7 @@
 #include "tools/vdb_synth/map_place.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/pipeline/analogy.h"
 #include "libvdbsynth/pipeline/control.h"
@@ -15,38 +16,29 @@
 namespace vdbsynth::cli {
 namespace {
 
-// An odd number of samples a side, as half of it.
-int halfOf(const Arguments& arguments, const std::string& name, int fallback, int most) {
-    const int side = arguments.whole(name, 2 * fallback + 1, 3, 2 * most + 1);
-    requireOption(side % 2 == 1, name, std::to_string(side),
-                  "an odd number from 3 to " + std::to_string(2 * most + 1));
-    return side / 2;
-}
-
 AnalogyOptions parseOptions(const Arguments& arguments) {
     AnalogyOptions options;
     VolumeAnalogyOptions& synthesis = options.synthesis;
-    synthesis.levels = arguments.whole("levels", 0, 1, 6);
-    synthesis.sweeps = arguments.whole("sweeps", 2, 0, 10);
-    synthesis.half = halfOf(arguments, "samples", 2, 4);
-    synthesis.coarseHalf = halfOf(arguments, "coarse-samples", 1, 3);
-    synthesis.components = arguments.whole("components", 16, 4, 256);
-    synthesis.coherence = arguments.real("coherence", 0.5, 0, 100);
+    synthesis.levels = arguments.whole("levels");
+    synthesis.sweeps = arguments.whole("sweeps");
+    // The library counts samples from the middle of a neighbourhood.
+    synthesis.half = arguments.whole("samples") / 2;
+    synthesis.coarseHalf = arguments.whole("coarse-samples") / 2;
+    synthesis.components = arguments.whole("components");
+    synthesis.coherence = arguments.real("coherence");
     if (arguments.has("exact")) synthesis.slack = 0;
     synthesis.causal = arguments.has("causal");
     synthesis.bent = !arguments.has("straight");
     synthesis.aligned = !arguments.has("naive");
-    options.scale = arguments.real("scale", 1, 0.25, 4);
-    options.strength = arguments.real("strength", 1, 0, 1);
-    options.halfWidth = float(arguments.real("half-width", 3, 1.5, 100));
+    options.scale = arguments.real("scale");
+    options.strength = arguments.real("strength");
+    options.halfWidth = float(arguments.real("half-width"));
     options.keepDirections = arguments.has("write-directions");
-    for (const char* name : {"direction", "exemplar-direction"}) {
-        requireDirection(arguments, name);
+    for (const char* name : {"direction", "exemplar-direction"})
         if (arguments.has(name) && arguments.has("naive"))
             throw Error(
                 ErrorCode::InvalidOption,
                 std::string("--") + name + ": --naive works along the grid's axes and takes no direction");
-    }
     return options;
 }
 
@@ -65,7 +57,7 @@ Models loadModels(Run& run) {
     ModelOptions pair = options;
     // --voxel-size and --resolution are the target's where it is a mesh; a pair has its own.
     pair.voxelSize = 0;
-    pair.resolution = run.arguments.whole("exemplar-resolution", 0, 2, 100000);
+    pair.resolution = run.arguments.whole("exemplar-resolution");
     pair.grid.clear();
     pair.carry = true;
     for (std::size_t i = 0; i + 1 < inputs.size(); i += 2) {
@@ -83,11 +75,10 @@ Models loadModels(Run& run) {
 void loadMask(Run& run, double voxelSize, AnalogyOptions& options) {
     if (!run.arguments.has("mask")) return;
     const std::string text = run.arguments.text("mask");
-    if (extensionOf(text) == "vdb" || text.find(".vdb:") != std::string::npos) {
-        options.mask = run.loadMask("mask");
+    if (namesGrid(text)) {
+        options.mask = run.loadGrid("mask");
         return;
     }
-    requireModelPath(text);
     ModelOptions model;
     model.voxelSize = voxelSize;
     model.halfWidth = 6;
@@ -146,14 +137,14 @@ void reportFilter(Run& run, const FilterAnalogyStats& stats) {
     if (stats.change > 0)
         message(run.context, MessageLevel::Note,
                 "on voxels held out the filter is off by " +
-                    std::to_string(std::min(stats.affineError, stats.searchError) / stats.change) +
+                    roundedText(std::min(stats.affineError, stats.searchError) / stats.change, 3) +
                     " of what it changes (root mean squares)");
 }
 
 void filter(Run& run, const VolumeAnalogyOptions& synthesis) {
     const Arguments& arguments = run.arguments;
     for (const char* name : {"scale", "strength", "mask", "carry", "source-map", "write-directions", "causal",
-                             "straight", "sweeps", "coherence", "coarse-samples", "adaptivity"})
+                             "straight", "sweeps", "coherence", "coarse-samples", "adaptivity", "map-types"})
         if (arguments.has(name))
             throw Error(ErrorCode::InvalidOption,
                         "--" + std::string(name) + ": has no meaning for grids of numbers with --naive");
@@ -188,7 +179,6 @@ void analogy(Run& run) {
                 std::string(kAnalogy.usage));
     AnalogyOptions options = parseOptions(arguments);
     const std::vector<std::string> paths = run.outputPaths();
-    requireOutputPaths(paths);
     if (isFilter(run)) {
         filter(run, options.synthesis);
         return;
@@ -198,7 +188,7 @@ void analogy(Run& run) {
         throw Error(ErrorCode::InvalidOption,
                     "--write-directions: goes into a .vdb output, and there is none");
     ModelOutputOptions outputs;
-    outputs.adaptivity = arguments.real("adaptivity", 0, 0, 1);
+    outputs.adaptivity = arguments.real("adaptivity");
     Models models = loadModels(run);
     keepCarried(arguments, models.pairs);
     loadMask(run, voxelSizeOf(*models.target.grid), options);
@@ -209,8 +199,7 @@ void analogy(Run& run) {
         pairs.push_back({&models.pairs[i], &models.pairs[i + 1]});
     const AnalogyResult result = makeAnalogyModel(pairs, models.target, options, run.context);
     if (result.directions) outputs.extraGrids.push_back(result.directions);
-    writeWithMap(run, result.model, place.path.empty() ? std::vector<GridPtr>{} : result.sources, place,
-                 paths, outputs);
+    writeWithMap(run, result.model, result.map, place, paths, outputs);
     report(run, result);
     run.finish();
 }
@@ -218,38 +207,8 @@ void analogy(Run& run) {
 }  // namespace
 
 const Command kAnalogy{
-    "analogy",
-    "analogy A A2 [C C2 ...] B -o OUT [options]",
-    "Put the texture that A2 has and A has not on another model B",
-    "vdb_synth analogy A.vdb A2.vdb bunny.off --resolution 200 --direction axis:z -o grooved.vdb",
-    {{"direction", "SPEC",
-      "which way the texture runs over B: axis:x, axis:-z, around:y, radial, curvature (default), a grid of "
-      "vectors or scalars FILE.vdb[:NAME], or strokes: .csv rows x,y,z,dx,dy,dz, .json, .ply points with "
-      "normals (world)"},
-     {"exemplar-direction", "SPEC", "the same over A; default what make wrote into A, else curvature"},
-     {"exemplar-resolution", "N",
-      "voxels along the longest side of a mesh A, default 128; A2 has A's voxels"},
-     {"scale", "S", "of the texture: 2 is twice as large in B's voxels, 0.25 to 4, default 1"},
-     {"strength", "T", "0 to 1: how far B becomes the result, default 1"},
-     {"mask", "FILE", "where: a grid of values from 0 to 1, or any model, inside which the texture goes"},
-     {"levels", "N", "levels of the pyramid, 1 to 6; default as many, at most 3, as still hold the texture"},
-     {"sweeps", "N", "over every level, 1 to 10, default 2"},
-     {"samples", "N", "side of a neighbourhood in samples, one a voxel: 3, 5 (default), 7 or 9"},
-     {"coarse-samples", "N", "the same at the next coarser level: 3 (default), 5 or 7"},
-     {"components", "N", "numbers that a neighbourhood is reduced to, 4 to 256, default 16"},
-     {"coherence", "K", "how much going on from a neighbour counts over the best match, default 0.5"},
-     {"exact", "", "the best match exactly, among reduced features (slower)"},
-     {"causal", "", "of what is made only what lies behind a voxel counts, as in the paper"},
-     {"straight", "",
-      "neighbourhoods are straight cubes, as in the paper, and do not bend along the surface"},
-     {"naive", "",
-      "neighbourhoods along the grid's axes, as the paper's first variant: for blur and the like; three "
-      "grids "
-      "of numbers (fog volumes, scalars) stay numbers"},
-     {"write-directions", "", "also write the direction field into .vdb outputs, as `direction`"},
-     mapOption(),
-     carryOptions()[0],
-     {"adaptivity", "A", "0 to 1: merge flat parts of a mesh output, default 0"}},
-    analogy};
+    "analogy", "analogy A A2 [C C2 ...] B -o OUT [options]",
+    "Transfer the texture that A2 has and A has not to another model B",
+    "vdb_synth analogy A.vdb A2.vdb bunny.off --resolution 200 --direction axis:z -o grooved.vdb", analogy};
 
 }  // namespace vdbsynth::cli

@@ -12,7 +12,6 @@ namespace {
 void crop(Run& run) {
     run.requireInputs(1, 1);
     const std::vector<std::string> paths = run.outputPaths();
-    requireOutputPaths(paths);
     if (!run.arguments.has("box"))
         throw Error(ErrorCode::InvalidOption,
                     "--box: missing; give i,j,k,I,J,K in index space, both corners inclusive");
@@ -32,11 +31,8 @@ void crop(Run& run) {
 
 }  // namespace
 
-const Command kCrop{"crop",
-                    "crop IN -o OUT --box BOX [options]",
+const Command kCrop{"crop", "crop IN -o OUT --box BOX [options]",
                     "Cut a box out of a model and record it as its domain",
-                    "vdb_synth crop grid.vdb -o part.vdb --box 8,8,8,39,39,39",
-                    {{"box", "BOX", "i,j,k,I,J,K in index space, both corners inclusive (voxels)"}},
-                    crop};
+                    "vdb_synth crop grid.vdb -o part.vdb --box 8,8,8,39,39,39", crop};
 
 }  // namespace vdbsynth::cli

@@ -113,8 +113,8 @@ Json vdbInfo(const std::string& path, Run& run) {
     info["grids"] = grids;
     try {
         VdbReadOptions read;
-        read.gridName = run.modelOptions().grid;
-        read.iso = run.modelOptions().iso;
+        read.gridName = run.arguments.text("grid");
+        if (run.arguments.has("iso")) read.iso = run.arguments.real("iso");
         const LevelSet model = modelFromGrids(path, contents.grids, read, run.context);
         const BandQuality quality = measureBand(*model.grid, run.context);
         info["model"] = Json{
@@ -131,7 +131,7 @@ Json vdbInfo(const std::string& path, Run& run) {
     } catch (const Error& error) {
         if (error.code() == ErrorCode::Cancelled) throw;
         info["model"] = nullptr;
-        info["not_a_model"] = error.what();
+        info["not_a_model"] = run.inWords(error.what());
     }
     return info;
 }
@@ -159,13 +159,14 @@ void info(Run& run) {
     run.requireInputs(1, 1);
     const std::string path = run.arguments.inputs[0];
     requireModelPath(path);
-    run.modelOptions();
+    if (run.arguments.has("output")) run.outputPath();
+    run.reserveOutputs();
     const Json json = isPointPath(path) || holdsPoints(path) ? pointsInfo(path, run)
                       : isMeshPath(path)                     ? meshInfo(path, run)
                       : isRasterPath(path)                   ? rasterInfo(path, run)
                                                              : vdbInfo(path, run);
-    if (run.arguments.has("json"))
-        printLine(json.dump(2, ' ', false, Json::error_handler_t::replace));
+    if (run.arguments.has("json") || run.arguments.has("output"))
+        run.answer(json.dump(2, ' ', false, Json::error_handler_t::replace));
     else
         printText(json, "");
     run.noteInput(path);
@@ -174,11 +175,8 @@ void info(Run& run) {
 
 }  // namespace
 
-const Command kInfo{"info",
-                    "info IN [--json]",
+const Command kInfo{"info", "info IN [--json] [-o OUT.json]",
                     "Say what is in a file: grids or faces, sizes, ranges, validity",
-                    "vdb_synth info grid.vdb",
-                    {{"json", "", "print JSON"}},
-                    info};
+                    "vdb_synth info grid.vdb", info};
 
 }  // namespace vdbsynth::cli

@@ -8,22 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace vdbsynth::cli {
 namespace {
-
-Index3 wholeTriple(const Arguments& arguments, const std::string& name) {
-    const std::array<double, 3> given = arguments.triple(name, {0, 0, 0});
-    Index3 result;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double value = given[std::size_t(axis)];
-        requireOption(!arguments.has(name) || (value == std::floor(value) && value >= 8 && value <= 4096),
-                      name, arguments.text(name), "three whole numbers from 8 to 4096, for example 64,64,32");
-        result[axis] = int(value);
-    }
-    return result;
-}
 
 bool isPair(const std::string& kind) {
     const auto& kinds = analogyPairKinds();
@@ -41,9 +28,8 @@ void makeTwo(Run& run, const MakeOptions& options) {
         throw Error(ErrorCode::InvalidOption,
                     "--size: a pair's domain follows from --resolution and --feature");
     requireOutputPaths(paths);
-    for (const std::string& path : paths) run.outputs().reserve(path);
     run.reserveOutputs();
-    const double halfWidth = run.arguments.real("half-width", 3, 1.5, 100);
+    const double halfWidth = run.arguments.real("half-width");
     const ModelPair pair = makePair(options, run.context);
     ModelOutputOptions outputs;
     outputs.metadata = run.metadata();
@@ -60,10 +46,10 @@ void make(Run& run) {
     run.requireInputs(1, 3);
     MakeOptions options;
     options.exemplar.kind = run.arguments.inputs[0];
-    options.exemplar.resolution = run.arguments.whole("resolution", 64, 16, 4096);
-    options.exemplar.feature = run.arguments.has("feature") ? run.arguments.real("feature", 0, 4, 256) : 0;
-    options.exemplar.size = wholeTriple(run.arguments, "size");
-    options.voxelSize = run.arguments.real("voxel-size", 1, 1e-30, 1e30);
+    options.exemplar.resolution = run.arguments.whole("resolution");
+    options.exemplar.feature = run.arguments.real("feature");
+    options.exemplar.size = run.arguments.wholeTriple("size");
+    options.voxelSize = run.arguments.real("voxel-size");
     if (isPair(options.exemplar.kind)) {
         makeTwo(run, options);
         return;
@@ -74,9 +60,8 @@ void make(Run& run) {
     if (run.arguments.inputs.size() == 2) paths.insert(paths.begin(), run.arguments.inputs[1]);
     if (paths.empty()) throw Error(ErrorCode::InvalidOption, "no output; usage: vdb_synth " + kMake.usage);
     requireOutputPaths(paths);
-    for (const std::string& path : paths) run.outputs().reserve(path);
     run.reserveOutputs();
-    const double halfWidth = run.arguments.real("half-width", 3, 1.5, 100);
+    const double halfWidth = run.arguments.real("half-width");
     const LevelSet model = withHalfWidth(makeModel(options, run.context), halfWidth, run.context);
     ModelOutputOptions outputs;
     outputs.metadata = run.metadata();
@@ -104,13 +89,11 @@ std::string summary() {
 
 }  // namespace
 
-const Command kMake{
-    "make",
-    "make KIND OUT [OUT2] [options]",
-    summary(),
-    "vdb_synth make grid grid.vdb --seed 3",
-    {{"size", "X,Y,Z", "domain (voxels); default a cube of --resolution, flat kinds less high"},
-     {"feature", "F", "typical feature (voxels); a larger domain holds more of them"}},
-    make};
+const Command kMake{"make",
+                    "make KIND OUT [OUT2] [options]",
+                    summary(),
+                    "vdb_synth make grid grid.vdb --seed 3",
+                    make,
+                    /* inputsAreOutputs= */ true};
 
 }  // namespace vdbsynth::cli

@@ -7,40 +7,37 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <cstdio>
 
 namespace vdbsynth::cli {
 namespace {
 
 double maskVoxelSize(const Arguments& arguments) {
-    return arguments.real("voxel-size", 1, 1e-30, 1e30);
+    return arguments.has("voxel-size") ? arguments.real("voxel-size") : 1;
 }
 
 GridPtr makeBall(const Run& run) {
     const Arguments& arguments = run.arguments;
     if (!arguments.has("center") || !arguments.has("radius"))
         throw Error(ErrorCode::InvalidOption, "mask ball: give --center X,Y,Z and --radius R (world)");
-    const std::array<double, 3> c = arguments.triple("center", {0, 0, 0});
-    const double radius = arguments.real("radius", 0, 1e-30, 1e30), voxel = maskVoxelSize(arguments);
+    const std::array<double, 3> c = arguments.triple("center");
+    const double radius = arguments.real("radius"), voxel = maskVoxelSize(arguments);
     for (double value : c)
-        requireOption(std::abs(value) / voxel < 1e8, "center", arguments.text("center"),
-                      "within 100 million voxels of the origin");
+        if (!(std::abs(value) / voxel < 1e8))
+            throw Error(ErrorCode::InvalidOption, "--center " + arguments.text("center") +
+                                                      ": must be within 100 million voxels of the origin");
     requireMemory(run.context, std::pow(2 * radius / voxel, 3), "--radius " + arguments.text("radius"),
                   "use a smaller radius or a larger --voxel-size");
     return ballMask({c[0], c[1], c[2]}, radius, voxel);
 }
 
 GridPtr makeRange(Run& run) {
-    double low = 0, high = 0;
-    int used = 0;
-    const std::string text = run.arguments.text("range");
-    if (text.empty()) throw Error(ErrorCode::InvalidOption, "mask range: give --range LOW,HIGH");
-    requireOption(std::sscanf(text.c_str(), "%lf,%lf%n", &low, &high, &used) == 2 &&
-                      std::size_t(used) == text.size() && low <= high,
-                  "range", text, "a smaller and a larger number, for example -1,0.5");
+    if (!run.arguments.has("range"))
+        throw Error(ErrorCode::InvalidOption, "mask range: give --range LOW,HIGH");
+    const auto [low, high] = run.arguments.range("range");
     const std::string path = run.arguments.inputs[1];
     if (extensionOf(path) != "vdb")
         throw Error(ErrorCode::InvalidOption, path + ": mask range reads a .vdb file");
+    run.reserveOutputs();
     run.noteInput(path);
     return rangeMask(*readVdbFloatGrid(path, run.arguments.text("grid"), run.context), low, high);
 }
@@ -49,8 +46,6 @@ void mask(Run& run) {
     run.requireInputs(1, 2);
     const std::string kind = run.arguments.inputs[0];
     const std::string path = run.outputPath();
-    if (extensionOf(path) != "vdb")
-        throw Error(ErrorCode::InvalidOption, path + ": unknown extension; masks are .vdb");
     const bool wantsModel = kind == "inside" || kind == "range";
     if (kind != "box" && kind != "ball" && !wantsModel)
         throw Error(ErrorCode::InvalidOption,
@@ -81,15 +76,8 @@ void mask(Run& run) {
 
 }  // namespace
 
-const Command kMask{
-    "mask",
-    "mask box|ball|inside|range [MODEL] -o OUT.vdb [options]",
-    "Make a mask grid: a box, a ball, a model's inside, a grid's range",
-    "vdb_synth mask inside bunny.off -o inside.vdb --resolution 64",
-    {{"box", "BOX", "for box: i,j,k,I,J,K in index space, both corners inclusive (voxels)"},
-     {"center", "X,Y,Z", "for ball: its centre (world)"},
-     {"radius", "R", "for ball (world)"},
-     {"range", "LOW,HIGH", "for range: active voxels of --grid with a value from LOW to HIGH"}},
-    mask};
+const Command kMask{"mask", "mask box|ball|inside|range [MODEL] -o OUT.vdb [options]",
+                    "Make a mask grid: a box, a ball, a model's inside, a grid's range",
+                    "vdb_synth mask inside bunny.off -o inside.vdb --resolution 64", mask};
 
 }  // namespace vdbsynth::cli

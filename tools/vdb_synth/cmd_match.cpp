@@ -25,10 +25,11 @@ std::string checked(const MatchOptions& options, const MatchResult& result) {
 
 void match(Run& run) {
     run.requireInputs(2, 2);
+    if (run.arguments.has("output")) run.outputPath();
     MatchOptions options;
-    options.block = run.arguments.whole("block", 16, 4, 256);
-    options.count = run.arguments.whole("count", 1, 1, 100000);
-    options.tolerance = run.arguments.real("tolerance", 0, 0, 100);
+    options.block = run.arguments.whole("block");
+    options.count = run.arguments.whole("count");
+    options.tolerance = run.arguments.real("tolerance");
     options.check = run.arguments.has("check");
     if (options.check && !run.arguments.has("tolerance"))
         throw Error(ErrorCode::InvalidOption, "--check: needs --tolerance; without it matches are exact");
@@ -37,13 +38,7 @@ void match(Run& run) {
         throw Error(ErrorCode::InvalidOption,
                     "--at: missing; give the minimum corner of the block in the query's index space, for "
                     "example --at 0,0,0");
-    const std::array<double, 3> at = run.arguments.triple("at", {0, 0, 0});
-    for (int axis = 0; axis < 3; ++axis) {
-        const double value = at[std::size_t(axis)];
-        requireOption(value == std::floor(value) && std::abs(value) < 1e8, "at", run.arguments.text("at"),
-                      "three whole numbers, for example 0,0,0");
-        options.at[axis] = int(value);
-    }
+    options.at = run.arguments.wholeTriple("at");
     for (const std::string& path : run.arguments.inputs) requireModelPath(path);
     const LevelSet exemplar = run.load(run.arguments.inputs[0]);
     ModelOptions queryOptions = run.modelOptions();
@@ -53,7 +48,7 @@ void match(Run& run) {
         queryOptions.resolution = 0;
     }
     const LevelSet query = run.load(run.arguments.inputs[1], queryOptions);
-    if (run.arguments.has("mask")) options.mask = run.loadMask("mask");
+    if (run.arguments.has("mask")) options.mask = run.loadGrid("mask");
     const MatchResult result = matchModel(exemplar, query, options, run.context);
     nlohmann::json matches = nlohmann::json::array();
     for (const BlockMatch& found : result.matches)
@@ -66,7 +61,7 @@ void match(Run& run) {
                        ",\n  \"known_samples\": " + std::to_string(result.known) + checked(options, result) +
                        ",\n  \"matches\": [";
     for (std::size_t i = 0; i < matches.size(); ++i) text += (i ? ",\n    " : "\n    ") + matches[i].dump();
-    printLine(text + "\n  ]\n}");
+    run.answer(text + "\n  ]\n}");
     run.count("bounds_computed", result.counts.nodes);
     run.count("exact_costs_computed", result.counts.exact);
     run.count("answered_by_correlation", result.counts.transforms);
@@ -75,20 +70,8 @@ void match(Run& run) {
 
 }  // namespace
 
-const Command kMatch{
-    "match",
-    "match EXEMPLAR QUERY --block N --at I,J,K [options]",
-    "Find the blocks of an exemplar most like one of another model, exactly",
-    "vdb_synth match grid.vdb more.vdb --block 16 --at 40,8,0 --count 3",
-    {{"block", "N", "side of the block (voxels), 4 to 256, default 16"},
-     {"at", "I,J,K", "minimum corner of the block in QUERY's index space (voxels)"},
-     {"count", "K", "how many matches, default 1"},
-     {"tolerance", "E",
-      "settle for matches whose difference is at most 1 + E times the least; default 0, exact"},
-     {"check", "", "with --tolerance: also search exactly, and say how close the matches are (slower)"},
-     indexCacheOption(),
-     {"mask", "FILE.vdb", "only samples where this grid is active count, in QUERY's index space"},
-     {"json", "", "print JSON (the default and only form)"}},
-    match};
+const Command kMatch{"match", "match EXEMPLAR QUERY --block N --at I,J,K [-o OUT.json] [options]",
+                     "Find the blocks of an exemplar that are most similar to one of another model, exactly",
+                     "vdb_synth match grid.vdb more.vdb --block 16 --at 40,8,0 --count 3", match};
 
 }  // namespace vdbsynth::cli

@@ -39,15 +39,16 @@ public:
     OutputSet& outputs() { return *mOutputs; }
     /// A message with the outputs' and streams' names where it has those of temporaries.
     std::string withoutTemporaries(const std::string& text) const;
+    /// The same with options where the library names fields of its structs (inFlags).
+    std::string inWords(const std::string& text) const;
 
     /// Options of loadModel from the common options.
     ModelOptions modelOptions() const;
     /// loadModel, noting the file's name and hash for metadata and report.
     LevelSet load(const std::string& path);
     LevelSet load(const std::string& path, const ModelOptions& options);
-    /// Reads the one grid of the mask that an option names. @throw Error InvalidOption (not .vdb), BadData
-    GridPtr loadMask(const std::string& option);
-    /// Reads the one grid of a file, or that of FILE.vdb:GRID. @throw Error as loadMask
+    /// Reads the one grid of the file that an option names, or that of FILE.vdb:GRID. @throw Error BadData
+    GridPtr loadGrid(const std::string& option);
     GridPtr loadGrid(const std::string& option, const std::string& text);
     /// Makes sure that all outputs can be written, before the work; `load` calls it.
     void reserveOutputs();
@@ -59,6 +60,11 @@ public:
     void count(const std::string& name, const nlohmann::json& value);
     /// Adds what a resulting level set is to the report: its size to "counts", its band to "quality".
     void describe(const LevelSet& result);
+    /// Writes a file that is text: an output, or what an option names. @throw Error Io
+    void write(const std::string& path, const std::string& text);
+    /// The answer of a command that makes no model: JSON to -o where that is given, else to standard output.
+    /// @throw Error Io
+    void answer(const std::string& json);
     /// Writes --report if asked for and renames all outputs into place.
     void finish();
 
@@ -68,14 +74,19 @@ private:
     std::unique_ptr<OutputSet> mOutputs;
 };
 
-/// One command of the tool. The table in main.cpp is the only registry.
+/// One command of the tool; options.h says which options it takes.
 struct Command {
     std::string name, usage, summary, example;
-    std::vector<Option> options;  ///< its own; the common ones come on top
-    void (*run)(Run&);            ///< checks every option before it reads a file
+    void (*run)(Run&);              ///< finds what is wrong with its options before it reads a file
+    bool inputsAreOutputs = false;  ///< its inputs name what is written
 };
 
-const std::vector<Option>& commonOptions();
+/// The only registry of commands.
+const std::vector<const Command*>& commands();
+/// Null if there is none of that name.
+const Command* findCommand(const std::string& name);
+
+/// `vdb_synth COMMAND --help`: its options in groups, see options.h.
 std::string helpText(const Command& command);
 
 /// Data for standard output.

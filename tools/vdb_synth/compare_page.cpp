@@ -2,9 +2,10 @@
 // a curve's value is where the pointer is.
 #include "tools/vdb_synth/compare_report.h"
 
+#include "libvdbsynth/base/number_text.h"
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace vdbsynth::cli {
 namespace {
@@ -90,9 +91,7 @@ std::string jsonName(const std::string& name) {
 }
 
 std::string pair(double x, double y) {
-    char text[48];
-    std::snprintf(text, sizeof text, "%.1f,%.1f ", x, y);
-    return text;
+    return fixedText(x, 1) + "," + fixedText(y, 1) + " ";
 }
 
 struct NamedCurve {

@@ -1,11 +1,12 @@
 // A comparison in text and JSON.
 #include "tools/vdb_synth/compare_report.h"
 
+#include "libvdbsynth/base/number_text.h"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace vdbsynth::cli {
 namespace {
@@ -233,9 +234,7 @@ Json distancesJson(const ModelDistances& d) {
 }  // namespace
 
 std::string shortNumber(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.4g", value);
-    return text;
+    return roundedText(value, 4);
 }
 
 std::vector<Verdict> scaleVerdicts(const Comparison& comparison, std::size_t i) {

@@ -14,13 +14,6 @@
 namespace vdbsynth::cli {
 namespace {
 
-constexpr const char* kRange =
-    "axis:x|y|z or axis:-x, around:x|y|z, radial, curvature, a grid FILE.vdb[:NAME], or strokes in a .csv, "
-    ".json or .ply file";
-
-bool isGrid(const std::string& text) {
-    return extensionOf(text) == "vdb" || text.find(".vdb:") != std::string::npos;
-}
 bool isRows(const std::string& extension) {
     return extension == "csv" || extension == "txt" || extension == "xyz";
 }
@@ -70,23 +63,14 @@ std::vector<Stroke> strokesOfPoints(const std::string& path, const RunContext& c
 
 }  // namespace
 
-void requireDirection(const Arguments& arguments, const std::string& name) {
-    if (!arguments.has(name)) return;
-    const std::string text = arguments.text(name), extension = extensionOf(text);
-    DirectionSource ignored;
-    requireOption(parseDirection(text, ignored) || isGrid(text) || isRows(extension) || extension == "json" ||
-                      extension == "ply",
-                  name, text, kRange);
-}
-
 DirectionSource directionOf(Run& run, const std::string& name) {
     DirectionSource source;
     if (!run.arguments.has(name)) return source;
     const std::string text = run.arguments.text(name);
     if (parseDirection(text, source)) return source;
-    if (isGrid(text)) {
+    if (namesGrid(text)) {
         source.kind = DirectionSource::Kind::Grid;
-        source.grid = run.loadGrid(name, text);
+        source.grid = run.loadGrid(name);
         return source;
     }
     source.kind = DirectionSource::Kind::Strokes;

@@ -9,10 +9,7 @@ namespace vdbsynth::cli {
 /// What --NAME says: a word, a .vdb grid, or a file of strokes. Automatic if it is not given.
 /// Strokes are .csv, .txt or .xyz rows `x y z dx dy dz` (commas or spaces), .json [{"position": [x,y,z],
 /// "direction": [dx,dy,dz]}, ...], or .ply points whose normals are the directions; world.
-/// @throw Error InvalidOption (neither a word nor such a file), Io, BadData (with the line)
+/// @throw Error Io, BadData (with the line)
 DirectionSource directionOf(Run& run, const std::string& name);
-
-/// Refuses what is neither a word nor a file of a known kind, before any file is read.
-void requireDirection(const Arguments& arguments, const std::string& name);
 
 }  // namespace vdbsynth::cli

@@ -6,11 +6,6 @@
 
 namespace vdbsynth::cli {
 
-Option indexCacheOption() {
-    return {"index-cache", "FOLDER",
-            "keep the search index of an exemplar in this folder and read it from there the next time"};
-}
-
 std::string indexFolder(const Arguments& arguments) {
     if (!arguments.has("index-cache")) return "";
     const std::string folder = arguments.text("index-cache");

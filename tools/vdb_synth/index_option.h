@@ -5,10 +5,7 @@
 
 namespace vdbsynth::cli {
 
-/// --index-cache: where indices of block search are kept.
-Option indexCacheOption();
-
-/// The folder, empty if none is given. @throw Error Io (no such folder)
+/// The folder of --index-cache, empty if none is given. @throw Error Io (no such folder)
 std::string indexFolder(const Arguments& arguments);
 
 }  // namespace vdbsynth::cli

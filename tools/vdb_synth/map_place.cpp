@@ -2,20 +2,11 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
+#include "libvdbsynth/vdb/source_map_grids.h"
 
 #include <algorithm>
 
 namespace vdbsynth::cli {
-
-Option mapOption() {
-    return {"source-map",
-            "[FILE.vdb]",
-            "also write the source map, what was copied from where (of synth for repeat); without "
-            "FILE into the .vdb output",
-            false,
-            0,
-            ".vdb"};
-}
 
 bool anyVdb(const std::vector<std::string>& paths) {
     return std::any_of(paths.begin(), paths.end(),
@@ -26,7 +17,6 @@ MapPlace mapPlaceOf(const Arguments& arguments, const std::vector<std::string>& 
     MapPlace place{arguments.text("source-map"), false};
     place.inside = place.path == kNoValue;
     if (place.path.empty()) return place;
-    requireOption(place.inside || extensionOf(place.path) == "vdb", "source-map", place.path, "a .vdb file");
     if (place.inside && !anyVdb(outputs))
         throw Error(ErrorCode::InvalidOption,
                     "--source-map: without a file it goes into a .vdb output, and there is none; give "
@@ -34,12 +24,19 @@ MapPlace mapPlaceOf(const Arguments& arguments, const std::vector<std::string>& 
     return place;
 }
 
-void writeWithMap(Run& run, const LevelSet& model, const std::vector<GridPtr>& map, const MapPlace& place,
+void writeWithMap(Run& run, const LevelSet& model, const SourceMap& map, const MapPlace& place,
                   const std::vector<std::string>& paths, ModelOutputOptions outputs) {
     outputs.metadata = run.metadata();
-    if (place.inside) outputs.extraGrids.insert(outputs.extraGrids.end(), map.begin(), map.end());
+    std::vector<GridPtr> grids;
+    if (!place.path.empty()) {
+        const MapTypes types =
+            run.arguments.text("map-types") == "float" ? MapTypes::Float : MapTypes::Integer;
+        grids = sourceMapGrids(map, *model.grid, run.context, types);
+    }
+    if (place.inside) outputs.extraGrids.insert(outputs.extraGrids.end(), grids.begin(), grids.end());
     writeModel(model, paths, outputs, run.outputs(), run.context);
-    if (!place.path.empty() && !place.inside) writeVdb(run.outputs().add(place.path), map, outputs.metadata);
+    if (!place.path.empty() && !place.inside)
+        writeVdb(run.outputs().add(place.path), grids, outputs.metadata);
 }
 
 }  // namespace vdbsynth::cli

@@ -1,14 +1,12 @@
 #include "tools/vdb_synth/option_set.h"
 
 #include "libvdbsynth/base/error.h"
-#include "libvdbsynth/vdb/level_set.h"
+#include "tools/vdb_synth/options.h"
 
 #include <boost/program_options.hpp>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <cstdlib>
+#include <cctype>
 
 namespace po = boost::program_options;
 
@@ -19,45 +17,11 @@ namespace {
     throw Error(ErrorCode::InvalidOption, text);
 }
 
-std::size_t editDistance(const std::string& a, const std::string& b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i;
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t above = row[j];
-            row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
-            diagonal = above;
-        }
-    }
-    return row[b.size()];
-}
-
-bool parseNumber(const std::string& text, double& value) {
-    char* end = nullptr;
-    value = std::strtod(text.c_str(), &end);
-    return !text.empty() && *end == 0 && std::isfinite(value) &&
-           text.find_first_of("xXpP ") == std::string::npos;
-}
-
-// The shortest text that reads back as the same number.
-std::string exact(double value) {
-    char text[32];
-    return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
-
-std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%g", value);
-    return text;
-}
-
 po::options_description describe(const std::vector<Option>& options) {
     po::options_description description;
     for (const Option& option : options) {
         const std::string names = option.letter ? option.name + "," + option.letter : option.name;
-        if (option.argument.empty())
+        if (option.kind == Kind::Flag)
             description.add_options()(names.c_str(), "");
         else
             description.add_options()(names.c_str(), po::value<std::vector<std::string>>(), "");
@@ -72,11 +36,11 @@ std::vector<std::string> bindOptionalValues(const std::vector<Option>& options,
     std::vector<std::string> bound;
     for (std::size_t i = 0; i < words.size(); ++i) {
         const auto optional = std::find_if(options.begin(), options.end(), [&](const Option& o) {
-            return !o.ending.empty() && (words[i] == "--" + o.name || words[i] == "-" + o.name);
+            return o.valueOptional && (words[i] == "--" + o.name || words[i] == "-" + o.name);
         });
         bound.push_back(words[i]);
         if (optional == options.end()) continue;
-        const std::string& ending = optional->ending;
+        const std::string ending = "." + optional->extensions.front();
         const std::string next = i + 1 < words.size() ? words[i + 1] : "";
         const bool hasValue = next.size() > ending.size() &&
                               next.compare(next.size() - ending.size(), ending.size(), ending) == 0;
@@ -107,26 +71,30 @@ std::string dashed(std::string name) {
     return name.substr(0, name.find('='));
 }
 
-}  // namespace
-
-std::string nearestName(const std::string& word, const std::vector<std::string>& names) {
-    std::string best;
-    std::size_t distance = std::max<std::size_t>(2, word.size() / 3) + 1;
-    for (const std::string& name : names) {
-        const std::size_t d = editDistance(word, name);
-        if (d < distance) {
-            distance = d;
-            best = name;
-        }
+void take(Arguments& arguments, const po::option& given) {
+    const std::vector<std::string> value = shownStreams(given.value);
+    if (given.string_key == "inputs") {
+        arguments.inputs.insert(arguments.inputs.end(), value.begin(), value.end());
+        return;
     }
-    return best;
+    auto& values = arguments.values[given.string_key];
+    if (value.empty())
+        values = {"true"};
+    else
+        values.insert(values.end(), value.begin(), value.end());
 }
 
-std::string Arguments::text(const std::string& name, const std::string& fallback) const {
+}  // namespace
+
+bool Arguments::takes(const std::string& name) const {
+    return findOption(mCommand, name) != nullptr;
+}
+
+std::string Arguments::text(const std::string& name) const {
     const auto it = values.find(name);
-    const std::string& value = it == values.end() || it->second.empty() ? fallback : it->second.front();
-    if (!value.empty() && mNormalised.count(name) == 0) note(name, value);
-    return value;
+    if (it != values.end() && !it->second.empty()) return it->second.front();
+    const Option* option = findOption(mCommand, name);
+    return option ? option->initial : "";
 }
 
 std::vector<std::string> Arguments::all(const std::string& name) const {
@@ -134,87 +102,110 @@ std::vector<std::string> Arguments::all(const std::string& name) const {
     return it == values.end() ? std::vector<std::string>{} : it->second;
 }
 
-int Arguments::whole(const std::string& name, int fallback, int low, int high) const {
-    if (!has(name)) return note(name, std::to_string(fallback)), fallback;
+void Arguments::check() const {
+    for (const auto& [name, given] : values)
+        if (const Option* option = findOption(mCommand, name))
+            for (const std::string& value : given)
+                if (value != kNoValue || !option->valueOptional) normalValue(*option, value);
+}
+
+std::map<std::string, std::vector<std::string>> Arguments::normalised() const {
+    std::map<std::string, std::vector<std::string>> normal;
+    for (const Option& option : optionsOf(mCommand)) {
+        if (option.incidental) continue;
+        std::vector<std::string> given = all(option.name);
+        if (given.empty() && !option.initial.empty()) given = {option.initial};
+        for (std::string& value : given) value = normalValue(option, value);
+        if (!given.empty()) normal[option.name] = given;
+    }
+    return normal;
+}
+
+int Arguments::whole(const std::string& name) const {
+    // Not given and no default: 0, which the library's structs hold for it.
     double value = 0;
-    const bool ok =
-        parseNumber(text(name), value) && value == std::floor(value) && value >= low && value <= high;
-    requireOption(ok, name, text(name),
-                  "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
-    note(name, std::to_string(int(value)));
+    readReal(text(name), value);
     return int(value);
 }
 
-std::uint64_t Arguments::wide(const std::string& name, std::uint64_t fallback) const {
-    if (!has(name)) return fallback;
-    const std::string given = text(name);
-    requireOption(
-        !given.empty() && given.size() <= 19 && given.find_first_not_of("0123456789") == std::string::npos,
-        name, given, "a whole number from 0 to 9999999999999999999");
-    return std::strtoull(given.c_str(), nullptr, 10);
-}
-
-double Arguments::real(const std::string& name, double fallback, double low, double high) const {
-    if (!has(name)) return note(name, exact(fallback)), fallback;
+double Arguments::real(const std::string& name) const {
     double value = 0;
-    const bool ok = parseNumber(text(name), value) && value >= low && value <= high;
-    requireOption(ok, name, text(name), "a number from " + number(low) + " to " + number(high));
-    note(name, exact(value));
+    readReal(text(name), value);
     return value;
 }
 
-std::array<double, 3> Arguments::triple(const std::string& name,
-                                        const std::array<double, 3>& fallback) const {
-    if (!has(name)) return fallback;
-    std::array<double, 3> result{};
-    std::string rest = text(name);
-    for (std::size_t i = 0; i < 3; ++i) {
-        const std::size_t comma = rest.find(',');
-        const bool last = i == 2;
-        requireOption(last == (comma == std::string::npos) && parseNumber(rest.substr(0, comma), result[i]),
-                      name, text(name), "three numbers with commas, for example 1,2,3");
-        if (!last) rest = rest.substr(comma + 1);
-    }
-    note(name, exact(result[0]) + "," + exact(result[1]) + "," + exact(result[2]));
-    return result;
+std::uint64_t Arguments::wide(const std::string& name) const {
+    std::uint64_t value = 0;
+    const Option* option = findOption(mCommand, name);
+    if (option && option->kind == Kind::Bytes)
+        readBytes(text(name), value);
+    else
+        readSeed(text(name), value);
+    return value;
+}
+
+std::array<double, 3> Arguments::triple(const std::string& name) const {
+    std::array<double, 3> parts{};
+    readTriple(text(name), parts);
+    return parts;
+}
+
+Index3 Arguments::wholeTriple(const std::string& name) const {
+    Index3 parts{0, 0, 0};
+    readWholeTriple(text(name), parts);
+    return parts;
+}
+
+std::pair<double, double> Arguments::range(const std::string& name) const {
+    std::pair<double, double> ends{0, 0};
+    readRange(text(name), ends.first, ends.second);
+    return ends;
 }
 
 IndexBox Arguments::box(const std::string& name) const {
     IndexBox box;
-    requireOption(parseBox(text(name), box), name, text(name),
-                  "six whole numbers i,j,k,I,J,K, every minimum at most its maximum");
-    note(name, boxText(box));
+    readBox(text(name), box);
     return box;
 }
 
-std::uint64_t Arguments::bytes(const std::string& name, std::uint64_t fallback) const {
-    if (!has(name)) return fallback;
-    std::string given = text(name);
-    double unit = 1;
-    if (!given.empty() && (given.back() == 'B' || given.back() == 'b')) given.pop_back();
-    const std::string letters = "KMGT";
-    if (!given.empty()) {
-        const std::size_t power = letters.find(char(std::toupper(static_cast<unsigned char>(given.back()))));
-        if (power != std::string::npos) {
-            unit = std::pow(1000.0, double(power + 1));
-            given.pop_back();
-        }
-    }
-    double value = 0;
-    requireOption(parseNumber(given, value) && value * unit >= 1e6 && value * unit <= 1e15, name, text(name),
-                  "at least 1M, for example 4G");
-    return std::uint64_t(value * unit);
+std::array<SizeValue, 3> Arguments::sizes(const std::string& name) const {
+    std::array<SizeValue, 3> sizes;
+    readSizes(text(name), sizes);
+    return sizes;
 }
 
-Arguments parseArguments(const std::vector<Option>& options, const std::vector<std::string>& words) {
-    std::vector<std::string> names;
-    for (const Option& option : options) names.push_back(option.name);
+std::array<int, 2> Arguments::pixels(const std::string& name) const {
+    std::array<int, 2> size{};
+    readPixels(text(name), size[0], size[1]);
+    return size;
+}
+
+SliceValue Arguments::slice(const std::string& name) const {
+    SliceValue slice;
+    readSlice(text(name), slice);
+    return slice;
+}
+
+std::vector<std::pair<double, double>> Arguments::labels(const std::string& name) const {
+    std::vector<std::pair<double, double>> labels;
+    if (has(name)) readLabels(text(name), labels);
+    return labels;
+}
+
+std::array<bool, 3> Arguments::axes(const std::string& name) const {
+    std::array<bool, 3> axes{};
+    readAxes(text(name), axes);
+    return axes;
+}
+
+Arguments parseArguments(const std::string& command, const std::vector<std::string>& words) {
+    const std::vector<Option>& options = optionsOf(command);
     const po::options_description description = describe(options);
     po::positional_options_description positional;
     positional.add("inputs", -1);
     namespace style = po::command_line_style;
     const int flags = (style::unix_style | style::allow_long_disguise) & ~style::allow_guessing;
-    Arguments arguments;
+    Arguments arguments(command);
     try {
         const po::parsed_options parsed =
             po::command_line_parser(hideStreams(bindOptionalValues(options, words)))
@@ -222,23 +213,9 @@ Arguments parseArguments(const std::vector<Option>& options, const std::vector<s
                 .positional(positional)
                 .style(flags)
                 .run();
-        for (po::option given : parsed.options) {
-            given.value = shownStreams(given.value);
-            if (given.string_key == "inputs") {
-                arguments.inputs.insert(arguments.inputs.end(), given.value.begin(), given.value.end());
-                continue;
-            }
-            auto& values = arguments.values[given.string_key];
-            if (given.value.empty())
-                values = {"true"};
-            else
-                values.insert(values.end(), given.value.begin(), given.value.end());
-        }
+        for (const po::option& given : parsed.options) take(arguments, given);
     } catch (const po::unknown_option& e) {
-        const std::string name = dashed(e.get_option_name());
-        const std::string near = nearestName(name, names);
-        refuse("--" + name + ": unknown option" +
-               (near.empty() ? "; see --help" : "; did you mean --" + near + "?"));
+        refuse(unknownOption(command, dashed(e.get_option_name())));
     } catch (const po::error_with_option_name& e) {
         refuse("--" + dashed(e.get_option_name()) + ": needs a value; see --help");
     } catch (const po::error& e) {
@@ -248,15 +225,6 @@ Arguments parseArguments(const std::vector<Option>& options, const std::vector<s
         if (!option.repeats && arguments.all(option.name).size() > 1)
             refuse("--" + option.name + ": given twice");
     return arguments;
-}
-
-std::vector<std::string> splitAtCommas(const std::string& text) {
-    std::vector<std::string> parts;
-    std::size_t begin = 0;
-    for (std::size_t comma; (comma = text.find(',', begin)) != std::string::npos; begin = comma + 1)
-        parts.push_back(text.substr(begin, comma - begin));
-    parts.push_back(text.substr(begin));
-    return parts;
 }
 
 }  // namespace vdbsynth::cli

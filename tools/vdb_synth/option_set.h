@@ -1,11 +1,11 @@
 #pragma once
-#include "libvdbsynth/math/index_box.h"
-#include "libvdbsynth/math/vec3.h"
+#include "tools/vdb_synth/option_value.h"
 
 #include <array>
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace vdbsynth::cli {
@@ -13,53 +13,60 @@ namespace vdbsynth::cli {
 /// Value of an option whose value was left out.
 inline const std::string kNoValue = "(none)";
 
-/// One option of a command.
-struct Option {
-    std::string name;      ///< without dashes
-    std::string argument;  ///< what --help shows for its value; empty: a flag
-    std::string help;      ///< one line; lengths are marked (voxels) or (world)
-    bool repeats = false;  ///< may be given several times
-    char letter = 0;       ///< short form, 0: none
-    std::string ending =
-        "";  ///< not empty: the value may be left out; the next word is it only if it ends so
-};
-
-/// What was given on the command line and in --config, as text; typed readers check ranges. Every reader
-/// throws Error InvalidOption that names the option, the value and what is allowed.
+/// What was given to one command on the command line and in --config. Readers return what was given, else the
+/// option's default, else nothing of its type (0, "", {}); `has` tells. Ranges are the options' own:
+/// after `check` no reader fails.
 class Arguments {
 public:
+    Arguments() = default;
+    explicit Arguments(std::string command) : mCommand(std::move(command)) {}
+
     std::vector<std::string> inputs;
     std::map<std::string, std::vector<std::string>> values;  ///< flags hold one "true"
 
-    /// What the typed readers read, defaults included, each in one form: what a run did, however it was
-    /// typed.
-    const std::map<std::string, std::string>& normalised() const { return mNormalised; }
-    /// Notes an option's normalised value; for commands that parse one themselves.
-    void note(const std::string& name, const std::string& value) const { mNormalised[name] = value; }
+    /// Refuses every value that is not what its option allows, whether or not the command comes to read it.
+    /// No file is looked at. @throw Error InvalidOption that names the option, the value and what is allowed
+    void check() const;
+    /// What makes the result, defaults included, each value in one form however it was typed; of paths the
+    /// names of files only. Options that are `incidental` are left out.
+    std::map<std::string, std::vector<std::string>> normalised() const;
 
+    const std::string& command() const { return mCommand; }
+    /// True if the command takes the option.
+    bool takes(const std::string& name) const;
+    /// True if it was given.
     bool has(const std::string& name) const { return values.count(name) > 0; }
-    std::string text(const std::string& name, const std::string& fallback = "") const;
+    std::string text(const std::string& name) const;
     std::vector<std::string> all(const std::string& name) const;
-    int whole(const std::string& name, int fallback, int low, int high) const;
-    std::uint64_t wide(const std::string& name, std::uint64_t fallback) const;
-    double real(const std::string& name, double fallback, double low, double high) const;
-    std::array<double, 3> triple(const std::string& name, const std::array<double, 3>& fallback) const;
+    int whole(const std::string& name) const;
+    double real(const std::string& name) const;
+    std::uint64_t wide(const std::string& name) const;  ///< Seed, Bytes
+    std::array<double, 3> triple(const std::string& name) const;
+    Index3 wholeTriple(const std::string& name) const;
+    std::pair<double, double> range(const std::string& name) const;
     IndexBox box(const std::string& name) const;
-    /// Bytes, with an optional K, M, G or T (powers of 1000).
-    std::uint64_t bytes(const std::string& name, std::uint64_t fallback) const;
+    std::array<SizeValue, 3> sizes(const std::string& name) const;
+    std::array<int, 2> pixels(const std::string& name) const;
+    SliceValue slice(const std::string& name) const;
+    std::vector<std::pair<double, double>> labels(const std::string& name) const;
+    std::array<bool, 3> axes(const std::string& name) const;
 
 private:
-    mutable std::map<std::string, std::string> mNormalised;
+    std::string mCommand;
 };
 
-/// Parses a command line (Boost.Program_options); `-o X`, `--option X`, `--option=X` and `-option X`.
-/// @throw Error InvalidOption (unknown option, with the nearest known name; a missing value; one given twice)
-Arguments parseArguments(const std::vector<Option>& options, const std::vector<std::string>& words);
+/// Parses a command line (Boost.Program_options): `-o X`, `--option X`, `--option=X` and `-option X`. Values
+/// are not looked at, see Arguments::check.
+/// @throw Error InvalidOption (unknownOption; a missing value; one given twice)
+Arguments parseArguments(const std::string& command, const std::vector<std::string>& words);
 
-/// "a,b,,c" is four parts.
-std::vector<std::string> splitAtCommas(const std::string& text);
+/// Adds the options and inputs of --config that the command line does not give.
+/// @throw Error Io (no such file), BadData (no JSON object), InvalidOption (unknownOption; several values)
+void mergeConfig(Arguments& arguments);
 
-/// The nearest of `names` to `word`, empty if none is near.
-std::string nearestName(const std::string& word, const std::vector<std::string>& names);
+/// Refuses an output that is one of the files this run reads, by any path, unless --force is given.
+/// @param inputsAreOutputs  the inputs are the names of what is written, as those of `make`
+/// @throw Error InvalidOption that names both
+void refuseOverwriting(const Arguments& arguments, bool inputsAreOutputs);
 
 }  // namespace vdbsynth::cli

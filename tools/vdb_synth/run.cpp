@@ -2,8 +2,9 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/hash.h"
+#include "libvdbsynth/base/machine_memory.h"
 #include "libvdbsynth/io/path.h"
-#include "libvdbsynth/io/text_scanner.h"
+#include "tools/vdb_synth/options.h"
 #include "tools/vdb_synth/stop_flag.h"
 #include "tools/vdb_synth/version.h"
 
@@ -13,7 +14,6 @@
 #include <chrono>
 #include <cstdio>
 #include <fstream>
-#include <set>
 
 #include <unistd.h>
 
@@ -21,41 +21,11 @@ namespace vdbsynth::cli {
 namespace {
 
 ProgressStyle progressStyle(const Arguments& arguments) {
-    const std::string style = arguments.text("progress", "auto");
-    requireOption(style == "auto" || style == "bar" || style == "json" || style == "off", "progress", style,
-                  "auto, bar, json or off");
+    const std::string style = arguments.text("progress");
     if (style == "bar") return ProgressStyle::Bar;
     if (style == "json") return ProgressStyle::Json;
     return style == "auto" && ::isatty(2) && !arguments.has("quiet") ? ProgressStyle::Bar
                                                                      : ProgressStyle::Off;
-}
-
-// The machine's memory, or what its control group leaves of it, as in a container or under a job scheduler.
-std::uint64_t presentMemory() {
-    std::uint64_t bytes = std::uint64_t(::sysconf(_SC_PHYS_PAGES)) * std::uint64_t(::sysconf(_SC_PAGE_SIZE));
-    for (const char* path : {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
-        std::uint64_t limit = 0;
-        if (std::ifstream(path) >> limit && limit > 0) bytes = std::min(bytes, limit);
-    }
-    return bytes;
-}
-
-// Options that change how a run goes, not what it makes.
-const std::set<std::string>& incidental() {
-    static const std::set<std::string> names{"threads",     "progress",      "report",  "config",
-                                             "index-cache", "quiet",         "verbose", "max-memory",
-                                             "output",      "no-supervisor", "seed",    "source-map"};
-    return names;
-}
-
-// Options that name a file: metadata holds its name, "inputs" its hash.
-bool isPath(const std::string& name) {
-    return name == "exemplar-mask" || name == "mask";
-}
-
-std::vector<std::string> fileNames(std::vector<std::string> paths) {
-    for (std::string& path : paths) path = fileNameOf(path);
-    return paths;
 }
 
 nlohmann::json asJson(const std::vector<std::string>& values) {
@@ -74,35 +44,32 @@ struct Run::Impl {
     nlohmann::json counts = nlohmann::json::object(), quality{};
     std::chrono::steady_clock::time_point began = std::chrono::steady_clock::now();
 
-    nlohmann::json options(const Arguments& arguments, bool normalised) const {
+    // As given, so that --config replays the run.
+    static nlohmann::json givenOptions(const Arguments& arguments) {
         nlohmann::json json = nlohmann::json::object();
         for (const auto& [name, values] : arguments.values)
-            if (!normalised)
-                json[name] = asJson(values);
-            else if (!incidental().count(name))
-                json[name] = asJson(isPath(name) ? fileNames(values) : values);
-        if (normalised)
-            for (const auto& [name, value] : arguments.normalised())
-                if (!incidental().count(name) && !isPath(name)) json[name] = value;
-        if (!normalised) {
-            json["inputs"] = arguments.inputs;
-            json.erase("report");
-            json.erase("config");
-        }
+            if (name != "report" && name != "config") json[name] = asJson(values);
+        json["inputs"] = arguments.inputs;
+        return json;
+    }
+
+    static nlohmann::json normalisedOptions(const Arguments& arguments) {
+        nlohmann::json json = nlohmann::json::object();
+        for (const auto& [name, values] : arguments.normalised()) json[name] = asJson(values);
         return json;
     }
 };
 
 Run::Run(const Command& command, Arguments given, const SupervisorLine& line)
     : mStreams(new Streams([line](const std::string& path) { line.temporary(path); })),
-      arguments(mStreams->spooled(std::move(given), command.name == "make")),
+      arguments(mStreams->spooled(std::move(given), command.inputsAreOutputs)),
       mImpl(new Impl{command, line, ProgressLog(progressStyle(arguments))}) {
     Impl& impl = *mImpl;
     impl.quiet = arguments.has("quiet");
     impl.verbose = arguments.has("verbose");
-    context.seed = arguments.wide("seed", 0);
-    context.threads = arguments.whole("threads", 0, 0, 1024);
-    context.maxMemory = arguments.bytes("max-memory", presentMemory() / 10 * 8);
+    context.seed = arguments.wide("seed");
+    context.threads = arguments.whole("threads");
+    context.maxMemory = arguments.has("max-memory") ? arguments.wide("max-memory") : presentMemory() / 10 * 8;
     context.cancel = stopFlag();
     context.onProgress = [&impl](const Progress& progress) {
         if (progress.reading)
@@ -120,13 +87,17 @@ Run::Run(const Command& command, Arguments given, const SupervisorLine& line)
         if (level != MessageLevel::Warning && impl.quiet) return;
         impl.progress.clear();
         std::fprintf(stderr, "vdb_synth: %s%s\n", level == MessageLevel::Warning ? "warning: " : "",
-                     withoutTemporaries(text).c_str());
+                     inWords(text).c_str());
     };
     mOutputs = std::make_unique<OutputSet>([&impl](const std::string& path) { impl.line.temporary(path); });
 }
 
 std::string Run::withoutTemporaries(const std::string& text) const {
     return mStreams->named(mOutputs ? mOutputs->withoutTemporaries(text) : text);
+}
+
+std::string Run::inWords(const std::string& text) const {
+    return withoutTemporaries(inFlags(text, mImpl->command.name));
 }
 
 Run::~Run() {
@@ -160,37 +131,16 @@ void Run::requireInputs(std::size_t low, std::size_t high) const {
 
 namespace {
 
-// "1,4,10-20" as ranges.
-std::vector<LabelRange> parseLabels(const std::string& text) {
-    std::vector<LabelRange> labels;
-    const std::string list = text + ",";
-    for (std::size_t at = 0; at < list.size();) {
-        const std::size_t comma = list.find(',', at), dash = list.find('-', at + 1);
-        const std::string low = list.substr(at, std::min(comma, dash) - at);
-        const std::string high = dash < comma ? list.substr(dash + 1, comma - dash - 1) : low;
-        float values[2] = {};
-        const bool good = parseReal(low, values[0]) && parseReal(high, values[1]) && values[0] <= values[1];
-        requireOption(good, "labels", text, "numbers and ranges with commas, for example 1,4,10-20");
-        labels.emplace_back(double(values[0]), double(values[1]));
-        at = comma + 1;
-    }
-    return labels;
-}
-
 void readRasterOptions(const Arguments& arguments, ModelOptions& options) {
-    const auto size = [&](const char* name) {
-        return arguments.has(name) ? arguments.real(name, 0, 1e-30, 1e30) : 0;
-    };
-    options.heights.pixelSize = options.volume.pixelSize = size("pixel-size");
-    options.heights.height = size("height");
-    options.heights.base = size("base");
-    const std::string plane = arguments.text("plane", "xy");
-    requireOption(plane == "xy" || plane == "yz" || plane == "zx", "plane", plane, "xy, yz or zx");
-    options.heights.plane = plane == "xy"   ? HeightPlane::XY
-                            : plane == "yz" ? HeightPlane::YZ
-                                            : HeightPlane::ZX;
-    if (arguments.has("threshold")) options.volume.threshold = arguments.real("threshold", 0, -1e30, 1e30);
-    if (arguments.has("labels")) options.volume.labels = parseLabels(arguments.text("labels"));
+    options.heights.pixelSize = options.volume.pixelSize = arguments.real("pixel-size");
+    options.heights.height = arguments.real("height");
+    options.heights.base = arguments.real("base");
+    const std::string plane = arguments.text("plane");
+    options.heights.plane = plane == "yz"   ? HeightPlane::YZ
+                            : plane == "zx" ? HeightPlane::ZX
+                                            : HeightPlane::XY;
+    if (arguments.has("threshold")) options.volume.threshold = arguments.real("threshold");
+    options.volume.labels = arguments.labels("labels");
     if (arguments.has("threshold") && arguments.has("labels"))
         throw Error(ErrorCode::InvalidOption, "--threshold and --labels: give one of them");
 }
@@ -199,28 +149,31 @@ void readRasterOptions(const Arguments& arguments, ModelOptions& options) {
 
 ModelOptions Run::modelOptions() const {
     ModelOptions options;
-    options.voxelSize = arguments.has("voxel-size") ? arguments.real("voxel-size", 0, 1e-30, 1e30) : 0;
-    options.resolution = arguments.whole("resolution", 0, 2, 100000);
+    options.voxelSize = arguments.real("voxel-size");
+    options.resolution = arguments.whole("resolution");
     if (arguments.has("voxel-size") && arguments.has("resolution"))
         throw Error(ErrorCode::InvalidOption, "--voxel-size and --resolution: give one of them");
-    options.halfWidth = arguments.real("half-width", 3, 1.5, 100);
-    const std::string open = arguments.text("open", "close");
-    requireOption(open == "close" || open == "shell", "open", open, "close or shell");
-    if (open == "shell") options.solid.open = OpenMesh::Shell;
-    options.solid.thickness = arguments.has("thickness") ? arguments.real("thickness", 0, 1e-30, 1e30) : 0;
-    if ((open == "shell") != arguments.has("thickness"))
+    // Where no level set is written, or a map says it, models have the default.
+    if (!arguments.text("half-width").empty()) options.halfWidth = arguments.real("half-width");
+    const bool shell = arguments.text("open") == "shell";
+    if (shell) options.solid.open = OpenMesh::Shell;
+    options.solid.thickness = arguments.real("thickness");
+    if (shell != arguments.has("thickness"))
         throw Error(ErrorCode::InvalidOption,
                     "--open shell and --thickness W: give both, the thickness of the shell in world units");
     readRasterOptions(arguments, options);
     options.grid = arguments.text("grid");
-    if (arguments.has("iso")) options.iso = arguments.real("iso", 0, -1e30, 1e30);
+    if (arguments.has("iso")) options.iso = arguments.real("iso");
     return options;
 }
 
 void Run::reserveOutputs() {
-    for (const char* name : {"output", "report", "source-map"})
-        for (const std::string& path : arguments.all(name))
-            if (path != kNoValue) mOutputs->reserve(path);
+    if (mImpl->command.inputsAreOutputs)
+        for (std::size_t i = 1; i < arguments.inputs.size(); ++i) mOutputs->reserve(arguments.inputs[i]);
+    for (const Option& option : optionsOf(mImpl->command.name))
+        if (option.kind == Kind::Output)
+            for (const std::string& path : arguments.all(option.name))
+                if (path != kNoValue) mOutputs->reserve(path);
 }
 
 void Run::noteInput(const std::string& path) {
@@ -243,8 +196,8 @@ VdbMetadata Run::metadata() const {
     for (const auto& [name, hash] : mImpl->inputs) inputs.push_back({{"name", name}, {"hash", hash}});
     return {{"vdbsynth:version", kVersion},
             {"vdbsynth:command", mImpl->command.name},
-            {"vdbsynth:options",
-             mImpl->options(arguments, true).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)},
+            {"vdbsynth:options", Impl::normalisedOptions(arguments).dump(
+                                     -1, ' ', false, nlohmann::json::error_handler_t::replace)},
             {"vdbsynth:seed", std::to_string(context.seed)},
             {"vdbsynth:inputs", inputs.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)}};
 }
@@ -253,17 +206,12 @@ void Run::count(const std::string& name, const nlohmann::json& value) {
     mImpl->counts[name] = value;
 }
 
-GridPtr Run::loadMask(const std::string& option) {
+GridPtr Run::loadGrid(const std::string& option) {
     return loadGrid(option, arguments.text(option));
 }
 
 GridPtr Run::loadGrid(const std::string& option, const std::string& text) {
-    const std::size_t colon = text.rfind(".vdb:");
-    const std::string path = colon == std::string::npos ? text : text.substr(0, colon + 4),
-                      name = colon == std::string::npos ? "" : text.substr(colon + 5);
-    if (extensionOf(path) != "vdb")
-        throw Error(ErrorCode::InvalidOption,
-                    "--" + option + " " + text + ": give a .vdb file, or FILE.vdb:GRID for one of its grids");
+    const auto [path, name] = splitGridPath(text);
     reserveOutputs();
     GridPtr grid;
     if (!name.empty()) {
@@ -290,6 +238,20 @@ void Run::describe(const LevelSet& result) {
                       {"finite", band.finite}};
 }
 
+void Run::write(const std::string& path, const std::string& text) {
+    std::ofstream file(mOutputs->add(path), std::ios::binary);
+    file << text;
+    file.close();
+    if (!file) throw Error(ErrorCode::Io, path + ": writing failed; the disk may be full");
+}
+
+void Run::answer(const std::string& json) {
+    if (arguments.has("output"))
+        write(outputPath(), json + "\n");
+    else
+        printLine(json);
+}
+
 void Run::finish() {
     Impl& impl = *mImpl;
     if (arguments.has("report")) {
@@ -303,7 +265,7 @@ void Run::finish() {
             {"program", "vdb_synth"},
             {"version", kVersion},
             {"command", impl.command.name},
-            {"options", impl.options(arguments, false)},
+            {"options", Impl::givenOptions(arguments)},
             {"seed", context.seed},
             {"inputs", inputs},
             {"seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - impl.began).count()},
@@ -311,12 +273,9 @@ void Run::finish() {
             {"stages", stages},
             {"counts", impl.counts},
             {"quality", impl.quality}};
-        const std::string path = arguments.text("report");
-        std::ofstream file(mOutputs->add(path));
-        file << withoutTemporaries(report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace))
-             << '\n';
-        file.close();
-        if (!file) throw Error(ErrorCode::Io, path + ": writing failed; the disk may be full");
+        write(
+            arguments.text("report"),
+            withoutTemporaries(report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace)) + "\n");
     }
     throwIfCancelled(context);
     mOutputs->commit();

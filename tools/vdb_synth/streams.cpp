@@ -6,10 +6,13 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace vdbsynth::cli {
@@ -25,7 +28,22 @@ bool namesExtension(const std::string& as) {
     return as != "mesh" && isKnownExtension(as);
 }
 
-void readAll(std::ofstream& file, std::string& start) {
+[[noreturn]] void failFull() {
+    throw Error(ErrorCode::Io, "standard input: there is no room for it on the disk of temporary files");
+}
+
+// @throw Error Io for what is not written, Cancelled
+void writeAll(int file, const char* bytes, std::size_t count) {
+    while (count > 0) {
+        const ssize_t put = ::write(file, bytes, count);
+        if (put < 0 && errno == EINTR) continue;
+        if (put <= 0) failFull();
+        bytes += put;
+        count -= std::size_t(put);
+    }
+}
+
+void readAll(int file, std::string& start) {
     std::vector<char> buffer(1 << 20);
     for (;;) {
         const ssize_t got = ::read(0, buffer.data(), buffer.size());
@@ -35,9 +53,7 @@ void readAll(std::ofstream& file, std::string& start) {
             throw Error(ErrorCode::Io, std::string("standard input cannot be read: ") + std::strerror(errno));
         if (got == 0) return;
         if (start.size() < 4096) start.append(buffer.data(), std::size_t(got));
-        if (!file.write(buffer.data(), got))
-            throw Error(ErrorCode::Io,
-                        "standard input: there is no room for it on the disk of temporary files");
+        writeAll(file, buffer.data(), std::size_t(got));
     }
 }
 
@@ -45,15 +61,24 @@ void readAll(std::ofstream& file, std::string& start) {
 
 Streams::~Streams() {
     for (const Stream& stream : mStreams) ::unlink(stream.temporary.c_str());
+    if (!mFolder.empty()) ::rmdir(mFolder.c_str());
 }
 
 std::string Streams::open(const std::string& name, const std::string& extension, bool output) {
-    std::error_code problem;
-    const std::filesystem::path folder = std::filesystem::temp_directory_path(problem);
-    if (problem) throw Error(ErrorCode::Io, "there is no folder for temporary files; set TMPDIR");
-    const std::string temporary =
-        (folder / ("vdb_synth." + std::to_string(::getpid()) + (output ? ".out" : ".in") + extension))
-            .string();
+    if (mFolder.empty()) {
+        std::error_code problem;
+        const std::filesystem::path place = std::filesystem::temp_directory_path(problem);
+        if (problem) throw Error(ErrorCode::Io, "there is no folder for temporary files; set TMPDIR");
+        // Others write to that place too, and could put a link where a name is known before: mkdtemp's is
+        // not, and only this user may look into it.
+        std::string folder = (place / "vdb_synth.XXXXXX").string();
+        if (!::mkdtemp(folder.data()))
+            throw Error(ErrorCode::Io,
+                        place.string() + ": no temporary folder can be made: " + std::strerror(errno));
+        mFolder = folder;
+        mOnTemporary(mFolder);
+    }
+    const std::string temporary = mFolder + (output ? "/out" : "/in") + extension;
     mOnTemporary(temporary);
     mStreams.push_back({name, temporary, output});
     return temporary;
@@ -65,14 +90,16 @@ void Streams::readInput(std::string& path, const Arguments& arguments) {
     if (extension.empty() && namesExtension(as)) extension = "." + as;
     const std::string temporary = open(path, extension, false);
     std::string start;
-    {
-        std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
+    const int file =
+        ::open(temporary.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_NOFOLLOW | O_CLOEXEC, S_IRUSR | S_IWUSR);
+    if (file < 0) failFull();
+    try {
         readAll(file, start);
-        file.close();
-        if (!file)
-            throw Error(ErrorCode::Io,
-                        "standard input: there is no room for it on the disk of temporary files");
+    } catch (...) {
+        ::close(file);
+        throw;
     }
+    if (::close(file) != 0) failFull();
     if (start.empty()) throw Error(ErrorCode::BadData, path + ": standard input is empty");
     path = temporary;
     if (!extension.empty()) return;

@@ -10,10 +10,10 @@ namespace vdbsynth::cli {
 /// Standard input and output as files. The path `-.EXT` (or `-` where the content tells what it is, or --as
 /// EXT does) means standard input among the inputs, and `-.EXT` standard output after -o. What comes in is
 /// kept in a temporary file, since readers go over a file more than once; what goes out is written whole
-/// before a byte of it leaves.
+/// before a byte of it leaves. Both lie in a folder of their own below TMPDIR that only this user can open.
 class Streams {
 public:
-    /// @param onTemporary  told each temporary's path before it is made
+    /// @param onTemporary  told each temporary's path before it is made, and that of their folder when it is
     explicit Streams(std::function<void(const std::string&)> onTemporary)
         : mOnTemporary(std::move(onTemporary)) {}
     ~Streams();
@@ -38,6 +38,7 @@ private:
     void readInput(std::string& path, const Arguments& arguments);
 
     std::vector<Stream> mStreams;
+    std::string mFolder;  // empty until one is needed
     std::function<void(const std::string&)> mOnTemporary;
 };
 

@@ -1,7 +1,9 @@
 #include "tools/vdb_synth/supervisor.h"
 
+#include "libvdbsynth/base/number_text.h"
 #include "tools/vdb_synth/stop_flag.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -22,6 +24,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// What the child is told: the number of its end of the pipe, and its parent's process ("7,4711").
 constexpr const char* kLineVariable = "VDBSYNTH_SUPERVISOR_LINE";
 
 std::atomic<bool> gStop{false};
@@ -65,14 +68,18 @@ void readMessages(Child& child, int file) {
 
 // Generous: no reader here is slower than 200 KB/s on any sample.
 double secondsAllowed(const std::string& path) {
-    if (const char* fixed = std::getenv("VDBSYNTH_READ_TIMEOUT")) return std::atof(fixed);
+    double fixed = 0;
+    const char* variable = std::getenv("VDBSYNTH_READ_TIMEOUT");
+    if (variable && parseReal(variable, fixed)) return fixed;
     struct stat status {};
     const double bytes = ::stat(path.c_str(), &status) == 0 ? double(status.st_size) : 0;
     return 60 + bytes / 200e3;
 }
 
 void removeTemporaries(const Child& child) {
-    for (const std::string& path : child.temporaries) ::unlink(path.c_str());
+    // Backwards, so that a folder comes after what lies in it.
+    for (auto path = child.temporaries.rbegin(); path != child.temporaries.rend(); ++path)
+        std::remove(path->c_str());
 }
 
 int reportDeath(const Child& child, int signal, bool hung) {
@@ -168,23 +175,43 @@ void SupervisorLine::send(char kind, const std::string& text) const {
     (void)ignored;
 }
 
+namespace {
+
+// The child's side: the work, with the parent's death as its own.
+int superviseChild(int file, pid_t parent, const std::function<int(const SupervisorLine&)>& work) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    // A parent that died before the line above sends no signal. Its number tells, not 1: a container's entry
+    // point is process 1 itself, and a subreaper may have any.
+    if (::getppid() != parent) return 1;
+    ::fcntl(file, F_SETFD, FD_CLOEXEC);
+    installStopHandlers();
+    const int code = work(SupervisorLine(file));
+    std::fflush(nullptr);
+    ::_exit(code);  // everything is written; the grids need no freeing
+}
+
+// Reads kLineVariable and clears it. @return false where this process is nobody's child
+bool takeLine(int& file, pid_t& parent) {
+    const char* variable = std::getenv(kLineVariable);
+    if (!variable) return false;
+    const std::string line = variable;
+    ::unsetenv(kLineVariable);
+    const std::size_t comma = std::min(line.find(','), line.size() - 1);
+    return parseWhole(line.substr(0, comma), file) && parseWhole(line.substr(comma + 1), parent);
+}
+
+}  // namespace
+
 int supervise(char** argv, const std::function<int(const SupervisorLine&)>& work) {
-    if (const char* line = std::getenv(kLineVariable)) {
-        const int file = std::atoi(line);
-        ::unsetenv(kLineVariable);
-        ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-        if (::getppid() == 1) return 1;  // the parent is gone already
-        ::fcntl(file, F_SETFD, FD_CLOEXEC);
-        installStopHandlers();
-        const int code = work(SupervisorLine(file));
-        std::fflush(nullptr);
-        ::_exit(code);  // everything is written; the grids need no freeing
-    }
+    int file = -1;
+    pid_t parent = 0;
+    if (takeLine(file, parent)) return superviseChild(file, parent, work);
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0) return work(SupervisorLine());
     installStopHandlers();
     ::signal(SIGCHLD, SIG_DFL);  // an inherited SIG_IGN would hide how the child ended
-    ::setenv(kLineVariable, std::to_string(ends[1]).c_str(), 1);
+    const std::string line = std::to_string(ends[1]) + ',' + std::to_string(::getpid());
+    ::setenv(kLineVariable, line.c_str(), 1);
     const pid_t process = ::fork();
     if (process == 0) {
         // OpenVDB's logging library starts threads when it is loaded, and a fork of a process with threads

@@ -1,4 +1,4 @@
-#include "libvdbsynth/synth/exemplar_variant.h"
+#include "libvdbsynth/map/exemplar_variant.h"
 
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/math/trigonometry.h"

@@ -1,4 +1,4 @@
-#include "libvdbsynth/grid/patch_map.h"
+#include "libvdbsynth/map/patch_map.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,13 +1,14 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/grid/brick_field.h"
-#include "libvdbsynth/grid/dense_field.h"
 
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace vdbsynth {
+
+struct DenseField;  // grid/dense_field.h
 
 /// Which of the blocks over a target sample say what it is.
 enum class PatchVote {

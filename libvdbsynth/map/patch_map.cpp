@@ -1,4 +1,5 @@
-#include "libvdbsynth/grid/patch_map.h"
+#include "libvdbsynth/map/patch_map.h"
+#include "libvdbsynth/grid/dense_field.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"

@@ -1,0 +1,36 @@
+#include "libvdbsynth/map/element_sources.h"
+
+#include "libvdbsynth/base/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace vdbsynth {
+
+void ElementSources::append(const Source& source) {
+    const Vec3d& p = source.position;
+    requireOption(source.weight > 0 && std::isfinite(source.weight), "weight", std::to_string(source.weight),
+                  "over 0");
+    requireOption(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z), "position", "nan",
+                  "three finite numbers");
+    mSources.push_back(source);
+}
+
+void ElementSources::add(std::vector<Source> sources) {
+    requireOption(mKind != ElementKind::Voxel, "kind", "voxel", "another; a voxel is added by its place");
+    std::stable_sort(sources.begin(), sources.end(),
+                     [](const Source& a, const Source& b) { return a.weight > b.weight; });
+    for (const Source& source : sources) append(source);
+    mEnd.push_back(mSources.size());
+}
+
+void ElementSources::add(const Index3& voxel, const Source& source) {
+    requireOption(mKind == ElementKind::Voxel, "kind", "point, vertex or corner",
+                  "voxel; other elements are added by their order");
+    append(source);
+    mVoxels.push_back(voxel);
+    mEnd.push_back(mSources.size());
+}
+
+}  // namespace vdbsynth

@@ -1,0 +1,120 @@
+#include "libvdbsynth/map/source_gather.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/grid/field_sampling.h"
+#include "libvdbsynth/grid/voxel_table.h"
+#include "libvdbsynth/map/exemplar_variant.h"
+#include "libvdbsynth/map/source_map.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace vdbsynth {
+namespace {
+
+// How a voxel's source is read: a sample's place, and by how much it moves a voxel of the map along x, y, z.
+struct Reader {
+    const BrickField* field = nullptr;
+    Vec3f at, x, y, z;
+
+    float operator()(const Vec3f& offset) const {
+        return sampleTrilinear(*field, at + x * offset.x + y * offset.y + z * offset.z);
+    }
+};
+
+Reader readerOf(const Source& source, const ExemplarSamples& samples) {
+    Reader reader;
+    reader.field = samples.field.get();
+    reader.at = cast<float>((source.position - samples.corner) * samples.samplesPerVoxel);
+    const double step = samples.samplesPerVoxel / double(source.scale);
+    const Affine back = turnBy(-cast<double>(source.rotation));
+    const auto moved = [&](const Vec3d& along) { return cast<float>(transformed(back, along) * step); };
+    reader.x = moved({1, 0, 0});
+    reader.y = moved({0, 1, 0});
+    reader.z = moved({0, 0, 1});
+    return reader;
+}
+
+class Gather {
+public:
+    Gather(const ElementSources& sources, const IndexBox& mapBox, int factor,
+           const std::vector<ExemplarSamples>& exemplars, float limit, const RunContext& ctx)
+        : mBox(mapBox),
+          mFactor(factor),
+          mLimit(limit),
+          mTable(VoxelTable::of(mapBox, sources.voxels())),
+          mReaders(sources.size()) {
+        makeReaders(sources, exemplars, ctx);
+    }
+
+    // A voxel of the result, from its box's corner on; `value` stays where there is no source.
+    void read(const Index3& local, float& value) const {
+        // Voxel i of the map is the voxels factor * i + shift .. that begin at finerBox.
+        const Index3 fine = local + mFirst;
+        const Index3 voxel{local.x / mFactor + mBox.min.x, local.y / mFactor + mBox.min.y,
+                           local.z / mFactor + mBox.min.z};
+        if (mTable.find(voxel) < 0) return;
+        // How far the place is from that voxel's middle [voxels of the map].
+        Vec3f from;
+        for (int axis = 0; axis < 3; ++axis)
+            from[axis] = float(fine[axis] - voxel[axis] * mFactor) / float(mFactor);
+        float sum = 0, weights = 0;
+        for (int k = 0; k < 27; ++k) {
+            const Index3 step{k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1};
+            const std::int32_t j = mTable.find(voxel + step);
+            if (j < 0) continue;
+            const Vec3f offset = from - Vec3f{float(step.x), float(step.y), float(step.z)};
+            const float weight = 1 / (1 + dot(offset, offset));
+            sum += weight * std::clamp(mReaders[std::size_t(j)](offset), -mLimit, mLimit);
+            weights += weight;
+        }
+        value = sum / weights;
+    }
+
+private:
+    void makeReaders(const ElementSources& sources, const std::vector<ExemplarSamples>& exemplars,
+                     const RunContext& ctx);
+
+    IndexBox mBox;
+    int mFactor;
+    float mLimit;
+    Index3 mFirst = finerBox(mBox, mFactor).min;
+    VoxelTable mTable;
+    std::vector<Reader> mReaders;
+};
+
+void Gather::makeReaders(const ElementSources& sources, const std::vector<ExemplarSamples>& exemplars,
+                         const RunContext& ctx) {
+    parallelFor(ctx, mReaders.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Source& source = *sources.strongest(i);
+            mReaders[i] = readerOf(source, exemplars[std::size_t(source.exemplar)]);
+        }
+    });
+}
+
+}  // namespace
+
+BrickField gatherThroughSources(const ElementSources& sources, const IndexBox& mapBox, int factor,
+                                const std::vector<ExemplarSamples>& exemplars, const BrickField& otherwise,
+                                float limit, const RunContext& ctx) {
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        const Source* source = sources.strongest(i);
+        if (!source || source->exemplar < 0 || std::size_t(source->exemplar) >= exemplars.size() ||
+            !mapBox.contains(sources.voxels()[i]))
+            throw Error(ErrorCode::ShapeMismatch,
+                        "voxel " + std::to_string(i) + " of the source map has no exemplar, or lies outside");
+    }
+    const Gather gather(sources, mapBox, factor, exemplars, limit, ctx);
+    return BrickField::generate(otherwise.box(), ctx, [&](const IndexBox& brick, float* samples) {
+        otherwise.readBox(brick.min, brick.size(), samples);
+        for (int i = 0; i < BrickField::kSamples; ++i) {
+            const Index3 p = brick.min + Index3{i >> 6, (i >> 3) & 7, i & 7};
+            if (otherwise.box().contains(p)) gather.read(p, samples[i]);
+        }
+    });
+}
+
+}  // namespace vdbsynth

@@ -1,0 +1,36 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/grid/brick_field.h"
+#include "libvdbsynth/map/element_sources.h"
+#include "libvdbsynth/math/vec3.h"
+
+#include <memory>
+#include <vector>
+
+namespace vdbsynth {
+
+/// A field over an exemplar and where its samples lie: sample p is at corner + p / samplesPerVoxel of the
+/// exemplar's index space as the map counts it.
+struct ExemplarSamples {
+    std::shared_ptr<const BrickField> field;  ///< its box begins at 0; values in voxels of the result
+    Vec3d corner;
+    double samplesPerVoxel = 1;  ///< the texture's scale, times the factor of a finer exemplar
+};
+
+/// Distances read through the sources of voxels. A voxel v of the map that has a source takes the mean of
+/// what the sources of itself and of its 26 neighbours j propose for its place,
+///     value(v) = sum_j w(v - j) E_j(x_j + R_j^T (v - j) / s_j) / sum_j w(v - j),   w(o) = 1 / (1 + |o|^2)
+/// with x, R and s the position, rotation and scale of a source (volume_analogy.h). Sources that continue
+/// each other propose one value; where they do not, the mean has no seam.
+/// A field of `factor` times the map's resolution is read at the voxels that make up each voxel of the map.
+/// @param sources    of voxels, each with one source
+/// @param mapBox     the target box as the map counts
+/// @param factor     1..64
+/// @param otherwise  what voxels without a source are; the result's resolution, box begins at 0
+/// @param limit      [voxels of the result] proposals are clamped there
+/// @par Cost    O(voxels with a source * factor^3 * 27)   @par Repeats same bits for any number of threads
+BrickField gatherThroughSources(const ElementSources& sources, const IndexBox& mapBox, int factor,
+                                const std::vector<ExemplarSamples>& exemplars, const BrickField& otherwise,
+                                float limit, const RunContext& ctx = {});
+
+}  // namespace vdbsynth

@@ -1,0 +1,37 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/map/source_map.h"
+#include "libvdbsynth/vdb/level_set.h"
+
+#include <vector>
+
+namespace vdbsynth {
+
+struct RepeatOptions {
+    CarriedValues carried = CarriedValues::Copied;
+    float halfWidth = 0;  ///< [voxels] of the result, 1.5..100; 0: the map's
+};
+
+/// @throw Error InvalidOption (a field out of its range, blended values of a map whose voxels have one source
+/// each), ShapeMismatch (another number of models than the map's), and what requireModel (vdb/level_set.h)
+/// throws
+void validate(const RepeatOptions& options, const SourceMap& map, const std::vector<const LevelSet*>& inputs);
+
+/// Applies a source map to models: gathers, votes and rebuilds, without any search. With the run's own models
+/// the result is bit for bit the run's; other models in their place give the same arrangement of another
+/// look.
+///  - of a synthesis: its exemplars;
+///  - of a fill: the exemplars, unless the kept model was its own, then the kept model;
+///  - of an analogy: the textured model of each pair, then the plain model that the texture was put on.
+/// Models whose voxels are 1/k of the run's (k a whole number, 1 to 64, the same for all) give the matching
+/// finer result: their domains must be the same boxes of the world. The map of a draft gives full detail
+/// there. A fill repeats at its own resolution only.
+/// A model that is not the run's own is told so in a note.
+/// @param inputs  SourceMap::inputs() many, in this order
+/// @throw Error as validate; ShapeMismatch (voxel size or domain do not fit the map), EmptyInput, Memory,
+/// Cancelled
+/// @par Repeats same bits for any number of threads
+LevelSet repeatMap(const SourceMap& map, const std::vector<const LevelSet*>& inputs,
+                   const RepeatOptions& options = {}, const RunContext& ctx = {});
+
+}  // namespace vdbsynth

@@ -1,0 +1,38 @@
+# The public surface: what is installed. A header here includes only others of this list
+# (tools/dev/check_stairs.py); steps and internals stay out.
+set(VDBSYNTH_PUBLIC_HEADERS
+  analogy/analogy_options.h
+  base/error.h
+  base/run_context.h
+  geometry/attribute.h
+  geometry/mesh.h
+  geometry/point_cloud.h
+  grid/brick_field.h
+  grid/raster_options.h
+  io/mesh_file.h
+  map/element_sources.h
+  map/exemplar_variant.h
+  map/patch_map.h
+  map/source_map.h
+  math/affine.h
+  math/index_box.h
+  math/vec3.h
+  measure/measures.h
+  pipeline/analogy.h
+  pipeline/compare.h
+  pipeline/fill.h
+  pipeline/make.h
+  pipeline/match.h
+  pipeline/model.h
+  pipeline/repeat.h
+  pipeline/synth.h
+  procedural/exemplar.h
+  search/block_index.h
+  synth/synthesis_options.h
+  synth/target_size.h
+  vdb/level_set.h
+  vdb/mesh_conversion.h
+  vdb/source_map_grids.h
+  vdb/vdb_file.h
+  vdb/vdb_fwd.h
+)

@@ -1,0 +1,17 @@
+#include "tools/vdb_synth/command.h"
+
+namespace vdbsynth::cli {
+
+const std::vector<const Command*>& commands() {
+    static const std::vector<const Command*> all{&kConvert, &kInfo,   &kCrop,    &kMask,   &kMatch, &kSynth,
+                                                 &kAnalogy, &kRepeat, &kCompare, &kRender, &kMake};
+    return all;
+}
+
+const Command* findCommand(const std::string& name) {
+    for (const Command* command : commands())
+        if (command->name == name) return command;
+    return nullptr;
+}
+
+}  // namespace vdbsynth::cli

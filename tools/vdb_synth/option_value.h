@@ -1,0 +1,70 @@
+#pragma once
+#include "libvdbsynth/math/index_box.h"
+#include "libvdbsynth/math/vec3.h"
+#include "libvdbsynth/procedural/exemplar.h"
+#include "tools/vdb_synth/option.h"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vdbsynth::cli {
+
+/// A length of a Kind::Sizes: in voxels, or as a multiple.
+struct SizeValue {
+    double value = 0;
+    bool multiple = false;
+};
+
+/// A Kind::Slice: an axis and where along it.
+struct SliceValue {
+    int axis = 2;
+    double fraction = 0.5;
+};
+
+/// FILE.vdb or FILE.vdb:GRID.
+struct GridPath {
+    std::string file, grid;
+};
+
+// Readers of values, by their kind. Each reads the whole text and returns false where it is none; ranges are
+// the option's, see checkValue. No locale matters.
+bool readWhole(const std::string& text, long long& value);
+bool readReal(const std::string& text, double& value);
+bool readSeed(const std::string& text, std::uint64_t& value);
+bool readBytes(const std::string& text, std::uint64_t& value);
+bool readTriple(const std::string& text, std::array<double, 3>& values);
+bool readWholeTriple(const std::string& text, Index3& values);
+bool readRange(const std::string& text, double& low, double& high);
+bool readBox(const std::string& text, IndexBox& box);
+bool readSizes(const std::string& text, std::array<SizeValue, 3>& sizes);
+bool readPixels(const std::string& text, int& width, int& height);
+bool readSlice(const std::string& text, SliceValue& slice);
+bool readLabels(const std::string& text, std::vector<std::pair<double, double>>& labels);
+bool readAxes(const std::string& text, std::array<bool, 3>& axes);
+/// "make KIND [--feature F]": the kind and its feature only.
+bool readProcess(const std::string& text, ExemplarOptions& options);
+GridPath splitGridPath(const std::string& text);
+/// True for FILE.vdb and FILE.vdb:GRID.
+bool namesGrid(const std::string& text);
+/// One choice for each axis from a Kind::AxisChoices.
+std::array<std::string, 3> splitAxisChoices(const std::string& text);
+
+/// "a,b,,c" is four parts.
+std::vector<std::string> splitAtCommas(const std::string& text);
+
+/// @throw Error InvalidOption "--NAME VALUE: must be RANGE"
+[[noreturn]] void refuseValue(const Option& option, const std::string& given);
+
+/// Refuses what is not of the option's kind or out of its range; looks at no file.
+/// @return the value in the one form that metadata holds: however it was typed the same, and of paths that
+/// are read the names of files only
+/// @throw Error InvalidOption that names the option, the value and what is allowed
+std::string normalValue(const Option& option, const std::string& given);
+
+/// The file that a value names, where it names one that is read or written; else empty.
+std::string pathIn(const Option& option, const std::string& value);
+
+}  // namespace vdbsynth::cli

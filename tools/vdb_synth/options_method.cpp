@@ -1,0 +1,289 @@
+// Options of single commands: what is made, how, and what steers it.
+#include "tools/vdb_synth/option_makers.h"
+#include "tools/vdb_synth/options.h"
+
+namespace vdbsynth::cli {
+namespace {
+
+std::vector<Option> resultTable() {
+    return {
+        option(Kind::Sizes, "size", "X,Y,Z")
+            .says("size of the result: voxels, or multiples of the exemplar's domain such as 2x,2x,1x")
+            .takenBy({"synth"}),
+        option(Kind::WholeTriple, "size", "X,Y,Z")
+            .from(8, 4096)
+            .measuredIn(Unit::Voxels)
+            .says("size of the domain, each side")
+            .otherwiseIs("a cube of --resolution, flat kinds less high")
+            .takenBy({"make"}),
+        option(Kind::Pixels, "size", "WxH")
+            .from(16, 8192)
+            .measuredIn(Unit::Pixels)
+            .says("size of the picture, each side")
+            .initially("800x600")
+            .sets({"size", "width"})
+            .takenBy({"render"}),
+        real("feature", "F", 4, 256)
+            .measuredIn(Unit::Voxels)
+            .says("size of a typical feature")
+            .otherwiseIs("the kind's own")
+            .noting("a larger domain holds more of them")
+            .takenBy({"make"}),
+        axisChoices("border", "KIND",
+                    {{"cut", ""}, {"object", ""}, {"tile", "the result repeats without a seam"}})
+            .says("how a growing axis ends")
+            .otherwiseIs("cut where a domain is recorded, else object")
+            .takenBy({"synth"}),
+        option(Kind::Box, "box", "BOX")
+            .measuredIn(Unit::Voxels)
+            .says("i,j,k,I,J,K in index space, both corners inclusive")
+            .takenBy({"crop", "mask"})
+            .butFor("mask",
+                    [](Option& o) { o.says("for box: i,j,k,I,J,K in index space, both corners inclusive"); }),
+        option(Kind::Triple, "center", "X,Y,Z")
+            .measuredIn(Unit::World)
+            .says("for ball: its centre")
+            .takenBy({"mask"}),
+        worldLength("radius", "R").says("for ball: its radius").takenBy({"mask"}),
+        option(Kind::Range, "range", "LOW,HIGH")
+            .sets({"range", "minimum", "maximum"})
+            .says("for range: active voxels of --grid with a value from LOW to HIGH")
+            .takenBy({"mask"}),
+        option(Kind::Triple, "view", "X,Y,Z")
+            .says("direction from the model to the camera")
+            .initially("1,-1.6,0.9")
+            .takenBy({"render"}),
+        option(Kind::Slice, "slice", "z=0.5")
+            .sets({"slice", "axis", "fraction"})
+            .says("draw a slice across an axis, at a fraction of the domain, instead of a shaded picture")
+            .takenBy({"render"}),
+        whole("samples", "N", 1, 64).says("rays per pixel at edges").initially("4").takenBy({"render"}),
+        option(Kind::Grid, "directions", "FILE.vdb[:GRID]")
+            .says("draw a direction field, such as analogy --write-directions writes, as streaks on the "
+                  "surface")
+            .takenBy({"render"}),
+    };
+}
+
+std::vector<Option> synthTable() {
+    return {
+        whole("block", "N", 4, 256)
+            .measuredIn(Unit::Voxels)
+            .says("side of the matched blocks")
+            .takenBy({"match", "synth"})
+            .butFor("match", [](Option& o) { o.initially("16"); })
+            .butFor("synth", [](Option& o) { o.otherwiseIs("from the exemplar, at most 16"); }),
+        whole("levels", "N", 1, 8)
+            .says("number of passes, coarse to fine")
+            .otherwiseIs("3, more for larger exemplars, or as many as fit")
+            .takenBy({"synth"}),
+        choice("method", "NAME",
+               {{"default", "texture optimization"},
+                {"exact", "blocks in raster order, each an exact best match"},
+                {"paper", "as published in 2004"}})
+            .says("how to synthesize")
+            .initially("default")
+            .takenBy({"synth"}),
+        flag("draft")
+            .says("a quick look: search at half the resolution, distances are approximate")
+            .takenBy({"synth"}),
+        whole("drift", "D", 0, 1 << 20)
+            .measuredIn(Unit::Voxels)
+            .says("how far sources may be from their own place along axes at 1x")
+            .initially("0")
+            .takenBy({"synth"}),
+        real("longest-run", "S", 0.01, 1)
+            .says("largest share of the exemplar to copy in one piece")
+            .initially("0.3")
+            .noting("less gives newer results with more seams")
+            .takenBy({"synth"}),
+        option(Kind::Folder, "index-cache", "FOLDER")
+            .says("keep the search index of an exemplar in this folder and read it from there the next time")
+            .sets({"indexFolder", "cacheFolder", "indexCache"})
+            .takenBy({"match", "synth"}),
+    };
+}
+
+std::vector<Option> controlTable() {
+    return {
+        option(Kind::Box, "exemplar-box", "BOX")
+            .measuredIn(Unit::Voxels)
+            .says("domain i,j,k,I,J,K in the exemplar's index space, both corners inclusive")
+            .takenBy({"synth"}),
+        grid("exemplar-mask")
+            .says("copy only from where this grid is active; its box is the domain (of the first exemplar)")
+            .takenBy({"synth"}),
+        option(Kind::ModelOrGrid, "exemplar-map", "FILE")
+            .says("which exemplar goes where in the result: a .vdb with a grid of labels (0 is the first "
+                  "exemplar), or a "
+                  "model, inside which the second is used, outside it the first")
+            .was("which")
+            .sets({"which", "exemplarMap"})
+            .takenBy({"synth"}),
+        grid("guide")
+            .says(
+                "scalar grid over the result; sources whose --exemplar-guide value is similar are preferred")
+            .takenBy({"synth"}),
+        grid("exemplar-guide")
+            .says("the same scalar over the exemplar, once for each exemplar")
+            .sets({"exemplarGuides", "exemplarGuide"})
+            .repeatable()
+            .takenBy({"synth"}),
+        real("guide-weight", "W", 0.001, 1000)
+            .says("weight of a guide's difference beside the shape's")
+            .initially("4")
+            .takenBy({"synth"}),
+        grid("rotation-map")
+            .measuredIn(Unit::Radians)
+            .says(
+                "grid over the result: how far to rotate what is copied, rotation vectors or angles about z")
+            .sets({"rotation", "rotationMap"})
+            .takenBy({"synth"}),
+        grid("scale-map")
+            .says("grid over the result: scale of what is copied, 0.25 to 4")
+            .sets({"scale", "scaleMap"})
+            .takenBy({"synth"}),
+        option(Kind::Model, "keep", "PARTIAL")
+            .says("fill the holes of this model instead of making a larger one")
+            .noting("without EXEMPLAR from the model itself")
+            .sets({"partial", "keep"})
+            .takenBy({"synth"}),
+        option(Kind::Hole, "hole", "MODEL")
+            .says("what to fill with --keep: the inside of a model, a box i,j,k,I,J,K of the kept model's "
+                  "voxels, or auto: "
+                  "a ball around each loop of open edges")
+            .takenBy({"synth"}),
+    };
+}
+
+std::vector<Option> analogyTable() {
+    return {
+        option(Kind::Direction, "direction", "SPEC")
+            .in(Group::Controls)
+            .says("direction of the texture over B: axis:x, axis:-z, around:y, radial, curvature, a grid of "
+                  "vectors or "
+                  "scalars FILE.vdb[:GRID], or strokes (world): .csv rows x,y,z,dx,dy,dz, .json, .ply points "
+                  "with normals")
+            .otherwiseIs("curvature")
+            .takenBy({"analogy"}),
+        option(Kind::Direction, "exemplar-direction", "SPEC")
+            .in(Group::Controls)
+            .says("direction of the texture over A, given in the same ways")
+            .otherwiseIs("what make wrote into A, else curvature")
+            .takenBy({"analogy"}),
+        option(Kind::ModelOrGrid, "mask", "FILE")
+            .in(Group::Controls)
+            .says("where to put the texture: a grid of weights from 0 to 1, or the inside of a model")
+            .takenBy({"analogy"}),
+        real("scale", "S", 0.25, 4)
+            .in(Group::Controls)
+            .says("size of the texture")
+            .initially("1")
+            .noting("2 is twice as large in B's voxels")
+            .takenBy({"analogy"}),
+        real("strength", "T", 0, 1)
+            .in(Group::Controls)
+            .says("blend from B to the result")
+            .initially("1")
+            .takenBy({"analogy"}),
+        whole("levels", "N", 1, 6)
+            .says("levels of the pyramid")
+            .otherwiseIs("as many as still hold the texture, at most 3")
+            .takenBy({"analogy"}),
+        whole("sweeps", "N", 1, 10).says("sweeps over every level").initially("2").takenBy({"analogy"}),
+        odd("samples", "N", 3, 9)
+            .says("side of a neighbourhood in samples, one per voxel")
+            .initially("5")
+            .sets({"half", "samples"})
+            .takenBy({"analogy"}),
+        odd("coarse-samples", "N", 3, 7)
+            .says("the same at the next coarser level")
+            .initially("3")
+            .sets({"coarseHalf", "coarseSamples"})
+            .takenBy({"analogy"}),
+        whole("components", "N", 4, 256)
+            .says("principal components a neighbourhood is reduced to")
+            .initially("16")
+            .takenBy({"analogy"}),
+        real("coherence", "K", 0, 100)
+            .says("preference for sources that continue a neighbour's over the nearest match")
+            .initially("0.5")
+            .takenBy({"analogy"}),
+        flag("exact")
+            .says("search the nearest match exactly, among reduced features (slower)")
+            .sets({"slack", "exact"})
+            .takenBy({"analogy"}),
+        flag("causal")
+            .says("compare only what lies behind a voxel in the sweep, as in the paper")
+            .takenBy({"analogy"}),
+        flag("straight")
+            .says("straight cubes as neighbourhoods, as in the paper, instead of curvature-adapted ones")
+            .sets({"bent", "straight"})
+            .takenBy({"analogy"}),
+        flag("naive")
+            .says("neighbourhoods along the grid's axes, as the paper's first variant, for filters such as "
+                  "blur; "
+                  "grids of numbers (fog volumes, scalars) stay numbers")
+            .sets({"aligned", "naive"})
+            .takenBy({"analogy"}),
+    };
+}
+
+std::vector<Option> matchTable() {
+    return {
+        option(Kind::WholeTriple, "at", "I,J,K")
+            .from(-kFarVoxel, kFarVoxel)
+            .in(Group::Controls)
+            .measuredIn(Unit::Voxels)
+            .says("minimum corner of the block in QUERY's index space")
+            .takenBy({"match"}),
+        grid("mask")
+            .in(Group::Controls)
+            .says("compare only samples where this grid is active, in QUERY's index space")
+            .takenBy({"match"}),
+        whole("count", "K", 1, 100000).says("number of matches").initially("1").takenBy({"match"}),
+        real("tolerance", "E", 0, 100)
+            .says("accept matches whose difference is at most 1 + E times the least")
+            .initially("0")
+            .noting("0 is exact")
+            .takenBy({"match"}),
+        flag("check")
+            .says("with --tolerance: also search exactly and print how close the matches are (slower)")
+            .takenBy({"match"}),
+        option(Kind::Axes, "stationary", "AXES")
+            .says("axes along which the reference is stationary: xyz, xy ... or none")
+            .otherwiseIs("those whose two faces both cut the solid")
+            .takenBy({"compare"}),
+        option(Kind::Process, "process", "\"make KIND\"")
+            .says("process that the reference is a sample of, such as \"make balls --feature 12\": compare "
+                  "with fresh "
+                  "samples of it")
+            .takenBy({"compare"}),
+        whole("fresh", "N", 2, 100)
+            .says("number of fresh samples")
+            .initially("10")
+            .noting("with --process")
+            .takenBy({"compare"}),
+        file("map", "FILE.vdb", {"vdb"})
+            .says("source map of OTHER")
+            .otherwiseIs("the one in OTHER")
+            .takenBy({"compare"}),
+    };
+}
+
+}  // namespace
+
+std::vector<Option> methodOptionTable() {
+    std::vector<Option> table = resultTable();
+    const auto append = [&table](std::vector<Option> more, Group group) {
+        for (Option& option : more)
+            table.push_back(option.group == Group::Result ? option.in(group) : option);
+    };
+    append(synthTable(), Group::Method);
+    append(analogyTable(), Group::Method);
+    append(matchTable(), Group::Method);
+    append(controlTable(), Group::Controls);
+    return table;
+}
+
+}  // namespace vdbsynth::cli

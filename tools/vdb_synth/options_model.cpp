@@ -1,0 +1,206 @@
+// Options of models as inputs, and of what is written.
+#include "tools/vdb_synth/option_makers.h"
+#include "tools/vdb_synth/options.h"
+
+namespace vdbsynth::cli {
+namespace {
+
+using Names = std::vector<std::string>;
+
+// Commands that take any geometry and make it a level set.
+const Names kModel{"convert", "crop", "mask", "match", "synth", "analogy", "repeat", "compare", "render"};
+
+std::vector<Option> inputTable() {
+    const auto with = [](Names names, const Names& more) {
+        names.insert(names.end(), more.begin(), more.end());
+        return names;
+    };
+    return {
+        worldLength("voxel-size", "W")
+            .in(Group::Input)
+            .says("side of a voxel")
+            .noting("a VDB is resampled")
+            .takenBy(with(kModel, {"make"}))
+            .butFor("make", [](Option& o) { o.initially("1").noting("").in(Group::Result); })
+            .butFor("mask", [](Option& o) { o.otherwiseIs("1 for box and ball"); })
+            .butFor("analogy", [](Option& o) { o.says("side of a voxel of B"); }),
+        whole("resolution", "N", 2, 100000)
+            .in(Group::Input)
+            .says("voxels along the longest side")
+            .otherwiseIs("128 for meshes and points, an image's pixels, a volume's cells")
+            .takenBy(with(kModel, {"make"}))
+            .butFor("make",
+                    [](Option& o) { o.from(16, 4096).initially("64").otherwiseIs("").in(Group::Result); })
+            .butFor("analogy", [](Option& o) { o.says("voxels along the longest side of B"); }),
+        whole("exemplar-resolution", "N", 2, 100000)
+            .in(Group::Input)
+            .says("voxels along the longest side of a mesh A")
+            .otherwiseIs("128")
+            .noting("A2 has A's voxels")
+            .takenBy({"analogy"}),
+        option(Kind::Text, "grid", "NAME")
+            .in(Group::Input)
+            .says("which grid of a VDB file")
+            .otherwiseIs("surface, else the first level set, else with --iso a fog volume")
+            .sets({"grid", "gridName"})
+            .takenBy(with(kModel, {"info"}))
+            .butFor("analogy", [](Option& o) { o.says("which grid of B, where it is a VDB file"); }),
+        real("iso", "VALUE")
+            .in(Group::Input)
+            .says("a fog volume is solid above this value")
+            .takenBy(with(kModel, {"info"})),
+        choice("open", "KIND", {{"close", ""}, {"shell", "of --thickness about its faces or points"}})
+            .in(Group::Input)
+            .says("how to treat input that is not watertight")
+            .initially("close")
+            .takenBy(kModel),
+        worldLength("thickness", "W")
+            .in(Group::Input)
+            .says("shell thickness")
+            .noting("with --open shell")
+
+            .takenBy(kModel),
+        real("half-width", "V", 1.5, 100)
+            .in(Group::Output)
+            .measuredIn(Unit::Voxels)
+            .says("half-width of the narrow band of the result")
+            .initially("3")
+            .takenBy({"convert", "crop", "synth", "analogy", "repeat", "make"})
+            .butFor("repeat",
+                    [](Option& o) { o.initially("").otherwiseIs("that of the run that wrote the map"); }),
+    };
+}
+
+std::vector<Option> rasterTable() {
+    return {
+        worldLength("pixel-size", "P")
+            .in(Group::Raster)
+            .says("side of an image's pixel, or of a volume's smallest cell")
+            .otherwiseIs("the file's, else 1")
+            .takenBy(kModel),
+        worldLength("height", "H")
+            .in(Group::Raster)
+            .says("height of white above black, or of the highest value above the lowest")
+            .otherwiseIs("a tenth of the longer side, real values as they are")
+            .takenBy(kModel),
+        worldLength("base", "B")
+            .in(Group::Raster)
+            .says("thickness of the solid under an image's lowest place")
+            .otherwiseIs("a 20th of its longer side")
+            .takenBy(kModel),
+        choice("plane", "PLANE", {{"xy", ""}, {"yz", ""}, {"zx", ""}})
+            .in(Group::Raster)
+            .says("plane of an image")
+            .initially("xy")
+            .noting("heights go along the third axis")
+            .takenBy(kModel),
+        real("threshold", "VALUE")
+            .in(Group::Raster)
+            .says("a volume (npy, tif, vti, nii ...) is solid above this value")
+            .takenBy(kModel),
+        option(Kind::Labels, "labels", "LIST")
+            .in(Group::Raster)
+            .says("a volume is solid where it has one of these values, for example 1,4,10-20")
+            .takenBy(kModel),
+    };
+}
+
+std::vector<Option> outputTable() {
+    const Names json{"info", "match", "compare"};
+    Option map = output("source-map", "[FILE.vdb]", {"vdb"});
+    map.valueOptional = true;
+    return {
+        output("output", "FILE", {})
+            .shortly('o')
+            .says("file to write, its kind by extension: .vdb, .obj, .ply, .stl, .off, .glb, .gltf; heights "
+                  "as .png or .exr")
+            .repeatable()
+            .takenBy({"convert", "crop", "synth", "analogy", "repeat", "make"}),
+        output("output", "FILE.vdb", {"vdb"}).shortly('o').says("mask to write").takenBy({"mask"}),
+        output("output", "FILE.png", {"png"}).shortly('o').says("picture to write").takenBy({"render"}),
+        output("output", "FILE.json", {"json"})
+            .shortly('o')
+            .says("write the answer as JSON to this file, and nothing to standard output")
+            .takenBy(json),
+        flag("json")
+            .in(Group::Output)
+            .ofTheRun()
+            .says("print JSON instead of text")
+            .takenBy({"info", "compare"}),
+        flag("json")
+            .in(Group::Output)
+            .ofTheRun()
+            .says("print JSON (the default and only form)")
+            .takenBy({"match"}),
+        output("page", "FILE.html", {"html", "htm"})
+            .says("also write a page with pictures, curves and verdicts")
+            .takenBy({"compare"}),
+        choice("as", "KIND",
+               {{"auto", "by extension; a .ply is a mesh"},
+                {"mesh", ""},
+                {"points", ""},
+                {"levelset", ""},
+                {"heightfield", ""},
+                {"volume", "what an image is read as"}})
+            .in(Group::Output)
+            .orAnExtension()
+            .says("what to write")
+            .noting("for standard input also the extension of its kind, such as obj")
+            .initially("auto")
+            .sets({"as", "imageAsVolume", "points"})
+            .takenBy({"convert"}),
+        real("adaptivity", "A", 0, 1)
+            .in(Group::Output)
+            .says("merge flat parts of a mesh output")
+            .initially("0")
+            .noting("0 keeps all faces")
+            .takenBy({"convert", "synth", "analogy", "repeat"}),
+        flag("sharp")
+            .in(Group::Output)
+            .says("keep edges and corners in a mesh output, by the input's faces where it is a mesh")
+            .takenBy({"convert"}),
+        real("spacing", "S", 0.25, 100)
+            .in(Group::Output)
+            .measuredIn(Unit::Voxels)
+            .says("least distance between points written")
+            .initially("1")
+            .takenBy({"convert"}),
+        option(Kind::Text, "carry", "NAMES")
+            .in(Group::Output)
+            .says("attributes and grids of the exemplar to transfer: all, or names with commas")
+            .initially("all")
+            .takenBy({"synth", "analogy", "repeat"}),
+        flag("carry-blend")
+            .in(Group::Output)
+            .says("transfer weighted means of numbers and vectors instead of copies")
+            .sets({"carried", "carryBlend"})
+            .takenBy({"synth", "repeat"}),
+        map.says("also write the source map, what was copied from where")
+            .noting("without FILE into the .vdb output")
+            .takenBy({"synth", "analogy"}),
+        choice("map-types", "TYPES",
+               {{"integer", ""},
+                {"float",
+                 "maps that readers without integer vectors, such as Debian's Python module, can open"}})
+            .in(Group::Output)
+            .says("types of the source map's grids")
+            .initially("integer")
+            .takenBy({"synth", "analogy"}),
+        flag("write-directions")
+            .in(Group::Output)
+            .says("also write the direction field into .vdb outputs, as the grid direction")
+            .sets({"keepDirections", "writeDirections"})
+            .takenBy({"analogy"}),
+    };
+}
+
+}  // namespace
+
+std::vector<Option> modelOptionTable() {
+    std::vector<Option> table = outputTable();
+    for (const auto& more : {inputTable(), rasterTable()})
+        table.insert(table.end(), more.begin(), more.end());
+    return table;
+}
+
+}  // namespace vdbsynth::cli

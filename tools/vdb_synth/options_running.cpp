@@ -1,0 +1,49 @@
+// Options of every command: how a run goes, not what it makes.
+#include "tools/vdb_synth/option_makers.h"
+#include "tools/vdb_synth/options.h"
+
+namespace vdbsynth::cli {
+
+std::vector<Option> runningOptionTable() {
+    const std::vector<std::string> every{"convert", "info",   "crop",    "mask",   "match", "synth",
+                                         "analogy", "repeat", "compare", "render", "make"};
+    std::vector<Option> table{
+        option(Kind::Seed, "seed", "N")
+            .says("seed of everything random")
+            .initially("0")
+            .noting("the same seed gives the same bytes")
+            .takenBy({"convert", "synth", "analogy", "make", "compare"}),
+        whole("threads", "N", 0, 1024)
+            .says("number of threads")
+            .initially("0")
+            .noting("0 is one for each core; results do not depend on it")
+            .takenBy(every),
+        option(Kind::Bytes, "max-memory", "BYTES")
+            .says("most memory to use, such as 4G")
+            .otherwiseIs("80 % of the machine's")
+            .takenBy(every),
+        choice("progress", "STYLE", {{"auto", "a bar on a terminal"}, {"bar", ""}, {"json", ""}, {"off", ""}})
+            .says("progress on standard error")
+            .initially("auto")
+            .takenBy(every),
+        output("report", "FILE.json", {"*"})
+            .says("write options, times and peak memory by stage, and counts")
+            .takenBy(every),
+        file("config", "FILE.json", {})
+            .says("options from a file or an earlier report; the command line wins")
+            .takenBy(every),
+        flag("force")
+            .says("allow an output that is also an input of this run; it is replaced at the end")
+            .takenBy(every),
+        flag("no-supervisor").says("work in this process, for debuggers").takenBy(every),
+        flag("quiet").shortly('q').says("errors and warnings only").takenBy(every),
+        flag("verbose").shortly('v').says("say what is done").takenBy(every),
+        flag("help").shortly('h').says("this text").takenBy(every),
+        flag("version").says("versions of vdb_synth and OpenVDB").takenBy(every),
+    };
+    // The seed has metadata of its own.
+    for (Option& option : table) option.in(Group::Running).ofTheRun();
+    return table;
+}
+
+}  // namespace vdbsynth::cli

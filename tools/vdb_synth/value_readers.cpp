@@ -1,0 +1,168 @@
+// Readers of option_value.h.
+#include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/io/path.h"
+#include "tools/vdb_synth/option_value.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+namespace vdbsynth::cli {
+
+bool readWhole(const std::string& text, long long& value) {
+    return parseWhole(text, value);
+}
+
+bool readReal(const std::string& text, double& value) {
+    return parseReal(text, value);
+}
+
+bool readSeed(const std::string& text, std::uint64_t& value) {
+    const char* end = text.data() + text.size();
+    const auto [at, problem] = std::from_chars(text.data(), end, value);
+    return problem == std::errc() && at == end;
+}
+
+bool readBytes(const std::string& text, std::uint64_t& value) {
+    std::string number = text;
+    double unit = 1, count = 0;
+    if (!number.empty() && (number.back() == 'B' || number.back() == 'b')) number.pop_back();
+    const std::string letters = "KMGT";
+    if (!number.empty()) {
+        const std::size_t power = letters.find(char(std::toupper(static_cast<unsigned char>(number.back()))));
+        if (power != std::string::npos) {
+            for (std::size_t i = 0; i <= power; ++i) unit *= 1000;
+            number.pop_back();
+        }
+    }
+    if (!parseReal(number, count) || count * unit < 1e6 || count * unit > 1e18) return false;
+    value = std::uint64_t(count * unit);
+    return true;
+}
+
+std::vector<std::string> splitAtCommas(const std::string& text) {
+    std::vector<std::string> parts;
+    std::size_t begin = 0;
+    for (std::size_t comma; (comma = text.find(',', begin)) != std::string::npos; begin = comma + 1)
+        parts.push_back(text.substr(begin, comma - begin));
+    parts.push_back(text.substr(begin));
+    return parts;
+}
+
+bool readTriple(const std::string& text, std::array<double, 3>& values) {
+    const std::vector<std::string> parts = splitAtCommas(text);
+    if (parts.size() != 3) return false;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (!parseReal(parts[i], values[i])) return false;
+    return true;
+}
+
+bool readWholeTriple(const std::string& text, Index3& values) {
+    std::array<double, 3> reals{};
+    if (!readTriple(text, reals)) return false;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double value = reals[std::size_t(axis)];
+        if (value != std::floor(value) || std::abs(value) > 1e9) return false;
+        values[axis] = int(value);
+    }
+    return true;
+}
+
+bool readRange(const std::string& text, double& low, double& high) {
+    const std::vector<std::string> parts = splitAtCommas(text);
+    return parts.size() == 2 && parseReal(parts[0], low) && parseReal(parts[1], high) && low <= high;
+}
+
+bool readBox(const std::string& text, IndexBox& box) {
+    const std::vector<std::string> parts = splitAtCommas(text);
+    constexpr int kFar = 1 << 28;  // beyond this, sizes of boxes leave int
+    int ends[6] = {};
+    if (parts.size() != 6) return false;
+    for (std::size_t i = 0; i < 6; ++i)
+        if (!parseWhole(parts[i], ends[i]) || ends[i] < -kFar || ends[i] > kFar) return false;
+    const IndexBox given{{ends[0], ends[1], ends[2]}, {ends[3], ends[4], ends[5]}};
+    if (given.empty()) return false;
+    box = given;
+    return true;
+}
+
+bool readSizes(const std::string& text, std::array<SizeValue, 3>& sizes) {
+    const std::vector<std::string> parts = splitAtCommas(text);
+    if (parts.size() != 3) return false;
+    for (std::size_t i = 0; i < 3; ++i) {
+        std::string part = parts[i];
+        sizes[i].multiple = !part.empty() && part.back() == 'x';
+        if (sizes[i].multiple) part.pop_back();
+        if (!parseReal(part, sizes[i].value)) return false;
+    }
+    return true;
+}
+
+bool readPixels(const std::string& text, int& width, int& height) {
+    const std::size_t cross = text.find('x');
+    return cross != std::string::npos && parseWhole(text.substr(0, cross), width) &&
+           parseWhole(text.substr(cross + 1), height);
+}
+
+bool readSlice(const std::string& text, SliceValue& slice) {
+    if (text.size() < 3 || text[0] < 'x' || text[0] > 'z' || text[1] != '=') return false;
+    slice.axis = text[0] - 'x';
+    return parseReal(text.substr(2), slice.fraction) && slice.fraction >= 0 && slice.fraction <= 1;
+}
+
+bool readLabels(const std::string& text, std::vector<std::pair<double, double>>& labels) {
+    for (const std::string& part : splitAtCommas(text)) {
+        const std::size_t dash = part.find('-', 1);  // the first may be a sign
+        const std::string low = part.substr(0, dash);
+        const std::string high = dash == std::string::npos ? low : part.substr(dash + 1);
+        // Samples are floats: a label is the float that is meant, not the double beside it.
+        float values[2] = {};
+        if (!parseReal(low, values[0]) || !parseReal(high, values[1]) || values[0] > values[1]) return false;
+        labels.emplace_back(double(values[0]), double(values[1]));
+    }
+    return true;
+}
+
+bool readAxes(const std::string& text, std::array<bool, 3>& axes) {
+    axes = {};
+    if (text == "none") return true;
+    for (char letter : text) {
+        if (letter < 'x' || letter > 'z' || axes[std::size_t(letter - 'x')]) return false;
+        axes[std::size_t(letter - 'x')] = true;
+    }
+    return !text.empty();
+}
+
+bool readProcess(const std::string& text, ExemplarOptions& options) {
+    std::istringstream words(text);
+    std::vector<std::string> all;
+    for (std::string word; words >> word;) all.push_back(word);
+    if ((all.size() != 2 && all.size() != 4) || all[0] != "make") return false;
+    const std::vector<ExemplarKind>& kinds = exemplarKinds();
+    options.kind = all[1];
+    if (std::none_of(kinds.begin(), kinds.end(),
+                     [&](const ExemplarKind& kind) { return kind.name == options.kind; }))
+        return false;
+    if (all.size() == 2) return true;
+    return all[2] == "--feature" && parseReal(all[3], options.feature) && options.feature >= 4 &&
+           options.feature <= 256;
+}
+
+GridPath splitGridPath(const std::string& text) {
+    const std::size_t colon = text.rfind(".vdb:");
+    if (colon == std::string::npos) return {text, ""};
+    return {text.substr(0, colon + 4), text.substr(colon + 5)};
+}
+
+bool namesGrid(const std::string& text) {
+    return extensionOf(splitGridPath(text).file) == "vdb";
+}
+
+std::array<std::string, 3> splitAxisChoices(const std::string& text) {
+    const std::vector<std::string> parts = splitAtCommas(text);
+    if (parts.size() != 3) return {parts[0], parts[0], parts[0]};
+    return {parts[0], parts[1], parts[2]};
+}
+
+}  // namespace vdbsynth::cli

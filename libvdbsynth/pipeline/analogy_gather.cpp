@@ -29,12 +29,6 @@ BrickField scaled(const BrickField& field, double scale, const RunContext& ctx) 
 
 }  // namespace
 
-BrickField gatherTextured(const LevelSet& textured, const IndexBox& box, const CutFaces& cut, float reach,
-                          double scale, const RunContext& ctx) {
-    BrickField field = widenBand(*textured.grid, box, cut, reach, ctx);
-    return scale == 1 ? field : scaled(field, scale, ctx);
-}
-
 void requireOnePlace(const AnalogyModelPair& pair) {
     const auto& a = pair.plain->grid->transform();
     const auto& b = pair.textured->grid->transform();
@@ -44,6 +38,12 @@ void requireOnePlace(const AnalogyModelPair& pair) {
                         std::to_string(voxelSizeOf(*pair.plain->grid)) + " and " +
                         std::to_string(voxelSizeOf(*pair.textured->grid)) +
                         "; convert both with the same `voxelSize`");
+}
+
+BrickField gatherTextured(const LevelSet& textured, const IndexBox& box, const CutFaces& cut, float reach,
+                          double scale, const RunContext& ctx) {
+    BrickField field = widenBand(*textured.grid, box, cut, reach, ctx);
+    return scale == 1 ? field : scaled(field, scale, ctx);
 }
 
 CutFaces facesTouched(const LevelSet& model) {

@@ -232,20 +232,15 @@ Comparison compared(const CompareInput& reference, const std::vector<CompareInpu
 
 }  // namespace
 
-namespace {
-
-void requireInput(const CompareInput& input) {
-    requireModel(&input.model, input.name.empty() ? "a model" : input.name);
-}
-
-}  // namespace
-
 void validate(const CompareOptions& options, const CompareInput& reference,
               const std::vector<CompareInput>& others) {
     requireOption(options.fresh >= 2 && options.fresh <= 100, "fresh", std::to_string(options.fresh),
                   "a whole number from 2 to 100");
-    requireInput(reference);
-    for (const CompareInput& other : others) requireInput(other);
+    const auto nameOf = [](const CompareInput& input) {
+        return input.name.empty() ? std::string("a model") : input.name;
+    };
+    requireModel(&reference.model, nameOf(reference));
+    for (const CompareInput& other : others) requireModel(&other.model, nameOf(other));
     if (options.process && !reference.model.domainRecorded)
         throw Error(ErrorCode::Unusable, reference.name +
                                              ": has no recorded domain, so `process` cannot "

@@ -30,8 +30,7 @@ struct CompareInput {
 };
 
 /// @throw Error InvalidOption (a field out of its range), Unusable (a process that cannot make the
-/// reference's size, or does not know it), BadData (a source map of other kinds of grid), and what
-/// requireModel (vdb/level_set.h) throws
+/// reference's size, or does not know it), and what requireModel (vdb/level_set.h) throws
 void validate(const CompareOptions& options, const CompareInput& reference,
               const std::vector<CompareInput>& others);
 

@@ -94,8 +94,7 @@ LevelSet repeated(const SourceMap& given, const LevelSets& inputs, const RepeatO
 
 }  // namespace
 
-LevelSet repeatMap(const SourceMap& given, const LevelSets& inputs, const RepeatOptions& options,
-                   const RunContext& ctx) {
+void validate(const RepeatOptions& options, const SourceMap& given, const LevelSets& inputs) {
     requireOption(options.halfWidth == 0 || (options.halfWidth >= 1.5f && options.halfWidth <= 100),
                   "halfWidth", roundedText(double(options.halfWidth), 6), "from 1.5 to 100 voxels");
     requireOption(options.carried == CarriedValues::Copied || given.method == MapMethod::Synthesis, "carried",
@@ -109,8 +108,15 @@ LevelSet repeatMap(const SourceMap& given, const LevelSets& inputs, const Repeat
                              ? " models, the kept one last"
                              : " models, the textured one of each pair and the one it was put on last") +
                         "; give as many, in the same order");
+    requireOption(!inputs.empty(), "inputs", "0", "as many as the map was made with");
+    for (std::size_t i = 0; i < inputs.size(); ++i)
+        requireModel(inputs[i], inputs.size() > 1 ? "model " + std::to_string(i + 1) : "the model");
+}
+
+LevelSet repeatMap(const SourceMap& given, const LevelSets& inputs, const RepeatOptions& options,
+                   const RunContext& ctx) {
     return withThreads(ctx, [&] {
-        for (const LevelSet* model : inputs) requireModel(model, "the model");
+        validate(options, given, inputs);
         return repeated(given, inputs, options, ctx);
     });
 }

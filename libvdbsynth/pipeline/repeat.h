@@ -12,6 +12,11 @@ struct RepeatOptions {
     float halfWidth = 0;  ///< [voxels] of the result, 1.5..100; 0: the map's
 };
 
+/// @throw Error InvalidOption (a field out of its range, blended values of a map whose voxels have one source
+/// each), BadData (requireSound), ShapeMismatch (another number of models than the map's), and what
+/// requireModel (vdb/level_set.h) throws
+void validate(const RepeatOptions& options, const SourceMap& map, const std::vector<const LevelSet*>& inputs);
+
 /// Applies a source map to models: gathers, votes and rebuilds, without any search. With the run's own models
 /// the result is bit for bit the run's; other models in their place give the same arrangement of another
 /// look.
@@ -23,8 +28,8 @@ struct RepeatOptions {
 /// there. A fill repeats at its own resolution only.
 /// A model that is not the run's own is told so in a note.
 /// @param inputs  SourceMap::inputs() many, in this order
-/// @throw Error InvalidOption (`halfWidth`), ShapeMismatch (number, voxel size or domain do not fit the map),
-/// EmptyInput, Memory, Cancelled
+/// @throw Error as validate; ShapeMismatch (voxel size or domain do not fit the map), EmptyInput, Memory,
+/// Cancelled
 /// @par Repeats same bits for any number of threads
 LevelSet repeatMap(const SourceMap& map, const std::vector<const LevelSet*>& inputs,
                    const RepeatOptions& options = {}, const RunContext& ctx = {});

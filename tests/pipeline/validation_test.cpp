@@ -127,6 +127,7 @@ Case with(const std::string& named, Field Options::*field, Field value, const Ca
 TEST_CASE("bad models are refused by every function", "[pipeline][error]") {
     const LevelSet good = made();
     const LevelSet hole = boxHole(good, {{8, 8, 8}, {14, 14, 14}});
+    const SourceMap map = synthesize(good).map;
     const std::vector<std::function<void(const LevelSet&)>> calls{
         [&](const LevelSet& bad) { synthesize(bad); },
         [&](const LevelSet& bad) {
@@ -150,16 +151,17 @@ TEST_CASE("bad models are refused by every function", "[pipeline][error]") {
             makeAnalogyModel({{&good, &good}}, bad, {});
         },
         [&](const LevelSet& bad) {
-            compareModels({"bad", bad, nullptr, nullptr}, {});
+            compareModels({"bad", bad, {}}, {});
         },
         [&](const LevelSet& bad) {
-            compareModels({"good", good, nullptr, nullptr}, {{"bad", bad, nullptr, nullptr}});
+            compareModels({"good", good, {}}, {{"bad", bad, {}}});
         },
         [&](const LevelSet& bad) {
             cropModel(bad, {{0, 0, 0}, {9, 9, 9}});
         },
         [&](const LevelSet& bad) { withHalfWidth(bad, 4); },
         [&](const LevelSet& bad) { resampled(bad, 2); },
+        [&](const LevelSet& bad) { repeatMap(map, {&bad}); },
     };
     for (std::size_t c = 0; c < calls.size(); ++c) {
         INFO("call " << c);
@@ -218,8 +220,7 @@ TEST_CASE("SynthOptions: every field out of its range is refused", "[pipeline][e
                          options.rotationMap = balls.grid;
                          synthesize({&balls, &grid}, options);
                      }});
-    cases.push_back(
-        {"no exemplar", ErrorCode::BadData, [] { repeatMap({}, {}); }});
+    cases.push_back({"no exemplar", ErrorCode::BadData, [&] { repeatMap({}, {&balls}); }});
     for (Case& each : cases)
         if (each.named == "voxel size") each.named = "voxels";
     refuses(cases);
@@ -283,7 +284,7 @@ TEST_CASE("AnalogyOptions: every field out of its range is refused", "[pipeline]
         cases.push_back(with("`half`", &V::half, value, deep));
     for (int value : {0, 4, 1 << 30}) cases.push_back(with("`coarseHalf`", &V::coarseHalf, value, deep));
     for (int value : {-1, 7, 31, 1 << 30}) cases.push_back(with("`levels`", &V::levels, value, deep));
-    for (int value : {-1, 11}) cases.push_back(with("`sweeps`", &V::sweeps, value, deep));
+    for (int value : {-1, 0, 11}) cases.push_back(with("`sweeps`", &V::sweeps, value, deep));
     for (int value : {0, 3, 257}) cases.push_back(with("`components`", &V::components, value, deep));
     for (double value : {-1.0, 101.0, kNaN}) cases.push_back(with("`coherence`", &V::coherence, value, deep));
     for (double value : {-1.0, 101.0, kNaN}) cases.push_back(with("`slack`", &V::slack, value, deep));
@@ -339,29 +340,31 @@ TEST_CASE("FilterAnalogyOptions, CompareOptions, MakeOptions: fields out of thei
     ExemplarOptions process;
     process.kind = "clouds";
     cases.push_back(with("clouds", &C::process, std::optional<ExemplarOptions>(process), compare));
-    using M = MakeOptions;
-    const auto make = [](const M& options) { makeModel(options); };
-    const auto pair = [](const M& options) { makePair(options); };
-    M balls, grooves;
-    balls.exemplar.kind = "balls";
-    grooves.exemplar.kind = "grooves";
-    for (double value : {0.0, -1.0, kNaN, kInfinite}) {
-        cases.push_back(with("`voxelSize`", &M::voxelSize, value, make, balls));
-        cases.push_back(with("`voxelSize`", &M::voxelSize, value, pair, grooves));
-    }
-    for (double value : {-1.0, 1.0, 1000.0, kNaN, kInfinite}) {
-        balls.exemplar.feature = grooves.exemplar.feature = value;
-        cases.push_back({"`feature`", ErrorCode::InvalidOption, [=] { make(balls); }});
-        cases.push_back({"`feature`", ErrorCode::InvalidOption, [=] { pair(grooves); }});
-    }
-    balls.exemplar.feature = grooves.exemplar.feature = 0;
-    balls.exemplar.resolution = grooves.exemplar.resolution = std::numeric_limits<int>::max();
-    cases.push_back({"`resolution`", ErrorCode::InvalidOption, [=] { make(balls); }});
-    cases.push_back({"`resolution`", ErrorCode::InvalidOption, [=] { pair(grooves); }});
-    balls.exemplar.resolution = 64;
-    balls.exemplar.size = {-8, 64, 64};
-    cases.push_back({"`size`", ErrorCode::InvalidOption, [=] { make(balls); }});
-    refuses(cases);
+}
+});
+using M = MakeOptions;
+const auto make = [](const M& options) { makeModel(options); };
+const auto pair = [](const M& options) { makePair(options); };
+M balls, grooves;
+balls.exemplar.kind = "balls";
+grooves.exemplar.kind = "grooves";
+for (double value : {0.0, -1.0, kNaN, kInfinite}) {
+    cases.push_back(with("`voxelSize`", &M::voxelSize, value, make, balls));
+    cases.push_back(with("`voxelSize`", &M::voxelSize, value, pair, grooves));
+}
+for (double value : {-1.0, 1.0, 1000.0, kNaN, kInfinite}) {
+    balls.exemplar.feature = grooves.exemplar.feature = value;
+    cases.push_back({"`feature`", ErrorCode::InvalidOption, [=] { make(balls); }});
+    cases.push_back({"`feature`", ErrorCode::InvalidOption, [=] { pair(grooves); }});
+}
+balls.exemplar.feature = grooves.exemplar.feature = 0;
+balls.exemplar.resolution = grooves.exemplar.resolution = std::numeric_limits<int>::max();
+cases.push_back({"`resolution`", ErrorCode::InvalidOption, [=] { make(balls); }});
+cases.push_back({"`resolution`", ErrorCode::InvalidOption, [=] { pair(grooves); }});
+balls.exemplar.resolution = 64;
+balls.exemplar.size = {-8, 64, 64};
+cases.push_back({"`size`", ErrorCode::InvalidOption, [=] { make(balls); }});
+refuses(cases);
 }
 
 TEST_CASE("ModelOptions, ModelOutputOptions, boxes and pictures: fields out of their range are refused",

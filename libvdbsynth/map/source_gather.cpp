@@ -8,6 +8,7 @@
 #include "libvdbsynth/map/source_map.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,18 @@ Reader readerOf(const Source& source, const ExemplarSamples& samples) {
     return reader;
 }
 
+// 1 up to a voxel away, 0 from two on: no proposal comes or goes at once between the map's voxels, where
+// finer ones lie.
+float taper(float offset) {
+    return std::clamp(2 - std::abs(offset), 0.f, 1.f);
+}
+
+// The voxels of the map along an axis whose taper at `from` is over 0.
+struct Reach {
+    explicit Reach(float from) : first(int(std::floor(from)) - 1), last(int(std::ceil(from)) + 1) {}
+    int first, last;
+};
+
 class Gather {
 public:
     Gather(const ElementSources& sources, const IndexBox& mapBox, int factor,
@@ -61,15 +74,18 @@ public:
         for (int axis = 0; axis < 3; ++axis)
             from[axis] = float(fine[axis] - voxel[axis] * mFactor) / float(mFactor);
         float sum = 0, weights = 0;
-        for (int k = 0; k < 27; ++k) {
-            const Index3 step{k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1};
-            const std::int32_t j = mTable.find(voxel + step);
-            if (j < 0) continue;
-            const Vec3f offset = from - Vec3f{float(step.x), float(step.y), float(step.z)};
-            const float weight = 1 / (1 + dot(offset, offset));
-            sum += weight * std::clamp(mReaders[std::size_t(j)](offset), -mLimit, mLimit);
-            weights += weight;
-        }
+        const Reach reach[3] = {Reach(from.x), Reach(from.y), Reach(from.z)};
+        for (int x = reach[0].first; x <= reach[0].last; ++x)
+            for (int y = reach[1].first; y <= reach[1].last; ++y)
+                for (int z = reach[2].first; z <= reach[2].last; ++z) {
+                    const std::int32_t j = mTable.find(voxel + Index3{x, y, z});
+                    if (j < 0) continue;
+                    const Vec3f offset = from - Vec3f{float(x), float(y), float(z)};
+                    const float weight =
+                        taper(offset.x) * taper(offset.y) * taper(offset.z) / (1 + dot(offset, offset));
+                    sum += weight * std::clamp(mReaders[std::size_t(j)](offset), -mLimit, mLimit);
+                    weights += weight;
+                }
         value = sum / weights;
     }
 

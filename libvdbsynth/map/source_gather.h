@@ -17,11 +17,13 @@ struct ExemplarSamples {
     double samplesPerVoxel = 1;  ///< the texture's scale, times the factor of a finer exemplar
 };
 
-/// Distances read through the sources of voxels. A voxel v of the map that has a source takes the mean of
-/// what the sources of itself and of its 26 neighbours j propose for its place,
-///     value(v) = sum_j w(v - j) E_j(x_j + R_j^T (v - j) / s_j) / sum_j w(v - j),   w(o) = 1 / (1 + |o|^2)
-/// with x, R and s the position, rotation and scale of a source (volume_analogy.h). Sources that continue
-/// each other propose one value; where they do not, the mean has no seam.
+/// Distances read through the sources of voxels. A place v in a voxel of the map that has a source takes the
+/// mean of what the sources of the voxels j around it propose for it,
+///     value(v) = sum_j w(v - j) E_j(x_j + R_j^T (v - j) / s_j) / sum_j w(v - j)
+///     w(o) = t(o_x) t(o_y) t(o_z) / (1 + |o|^2),   t(a) = min(1, max(0, 2 - |a|))
+/// with x, R and s the position, rotation and scale of a source (volume_analogy.h). In the middle of a voxel
+/// these are itself and its 26 neighbours. Sources that continue each other propose one value; where they do
+/// not, the mean has no seam.
 /// A field of `factor` times the map's resolution is read at the voxels that make up each voxel of the map.
 /// @param sources    of voxels, each with one source
 /// @param mapBox     the target box as the map counts

@@ -93,6 +93,33 @@ TEST_CASE("gatherThroughSources: a finer exemplar is read at the same places", "
     }
 }
 
+TEST_CASE("gatherThroughSources: finer voxels do not jump where the map's voxels meet", "[map][property]") {
+    constexpr int kFactor = 4;
+    const auto field = shared(test::fieldFrom({96, 96, 96}, [](const Index3& p) {
+        return std::sin(float(p.x) / 13) + std::cos(float(p.y + p.z) / 11);
+    }));
+    // Sources that do not continue each other: every voxel is some voxels off its place.
+    const ElementSources sources = sourcesBy([&](const Index3& p) {
+        Random random(8, std::uint64_t((p.x * 64 + p.y) * 64 + p.z + 100000));
+        Source source;
+        source.position = vec(p - kBox.min) + Vec3d{random.uniform(2, 7), random.uniform(2, 7), 4};
+        return source;
+    });
+    const IndexBox finer = IndexBox::fromSize(kBox.size() * kFactor);
+    const BrickField made = gatherThroughSources(sources, kBox, kFactor, {{field, {0, 0, 0}, kFactor}},
+                                                 BrickField(finer, 0.f), 1e6f);
+    double across = 0, within = 0;
+    int crossings = 0, steps = 0;
+    for (int x = 8; x < 48; ++x)
+        for (int y = 8; y < 48; y += 3) {
+            const double step = std::abs(double(made.at({x + 1, y, 20}) - made.at({x, y, 20})));
+            const bool crosses = (x + 1) % kFactor == 0;
+            (crosses ? across : within) += step;
+            ++(crosses ? crossings : steps);
+        }
+    CHECK(across / crossings < 1.5 * within / steps);
+}
+
 TEST_CASE("gatherThroughSources: where there is no source it is otherwise, beyond the limit it is clamped",
           "[map]") {
     const auto field = shared(BrickField(IndexBox::fromSize({8, 8, 8}), 5.f));

@@ -82,8 +82,9 @@ TEST_CASE("makeAnalogyModel: strength 0 and an empty mask leave the target as it
     const double before = solidVoxels(*target.grid);
     CHECK(solidVoxels(*applied(pair, target, none).model.grid) == Approx(before).epsilon(0.003));
     AnalogyOptions masked;
-    masked.mask = openvdb::FloatGrid::create(0.f);
-    masked.mask->setTransform(target.grid->transform().copy());
+    const auto empty = openvdb::FloatGrid::create(0.f);
+    empty->setTransform(target.grid->transform().copy());
+    masked.mask = empty;
     CHECK(solidVoxels(*applied(pair, target, masked).model.grid) == Approx(before).epsilon(0.003));
     CHECK(solidVoxels(*applied(pair, target).model.grid) > 1.5 * before);
 }

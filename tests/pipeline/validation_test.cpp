@@ -340,31 +340,29 @@ TEST_CASE("FilterAnalogyOptions, CompareOptions, MakeOptions: fields out of thei
     ExemplarOptions process;
     process.kind = "clouds";
     cases.push_back(with("clouds", &C::process, std::optional<ExemplarOptions>(process), compare));
-}
-});
-using M = MakeOptions;
-const auto make = [](const M& options) { makeModel(options); };
-const auto pair = [](const M& options) { makePair(options); };
-M balls, grooves;
-balls.exemplar.kind = "balls";
-grooves.exemplar.kind = "grooves";
-for (double value : {0.0, -1.0, kNaN, kInfinite}) {
-    cases.push_back(with("`voxelSize`", &M::voxelSize, value, make, balls));
-    cases.push_back(with("`voxelSize`", &M::voxelSize, value, pair, grooves));
-}
-for (double value : {-1.0, 1.0, 1000.0, kNaN, kInfinite}) {
-    balls.exemplar.feature = grooves.exemplar.feature = value;
-    cases.push_back({"`feature`", ErrorCode::InvalidOption, [=] { make(balls); }});
-    cases.push_back({"`feature`", ErrorCode::InvalidOption, [=] { pair(grooves); }});
-}
-balls.exemplar.feature = grooves.exemplar.feature = 0;
-balls.exemplar.resolution = grooves.exemplar.resolution = std::numeric_limits<int>::max();
-cases.push_back({"`resolution`", ErrorCode::InvalidOption, [=] { make(balls); }});
-cases.push_back({"`resolution`", ErrorCode::InvalidOption, [=] { pair(grooves); }});
-balls.exemplar.resolution = 64;
-balls.exemplar.size = {-8, 64, 64};
-cases.push_back({"`size`", ErrorCode::InvalidOption, [=] { make(balls); }});
-refuses(cases);
+    using M = MakeOptions;
+    const auto make = [](const M& options) { makeModel(options); };
+    const auto pair = [](const M& options) { makePair(options); };
+    M balls, grooves;
+    balls.exemplar.kind = "balls";
+    grooves.exemplar.kind = "grooves";
+    for (double value : {0.0, -1.0, kNaN, kInfinite}) {
+        cases.push_back(with("`voxelSize`", &M::voxelSize, value, make, balls));
+        cases.push_back(with("`voxelSize`", &M::voxelSize, value, pair, grooves));
+    }
+    for (double value : {-1.0, 1.0, 1000.0, kNaN, kInfinite}) {
+        balls.exemplar.feature = grooves.exemplar.feature = value;
+        cases.push_back({"`feature`", ErrorCode::InvalidOption, [=] { make(balls); }});
+        cases.push_back({"`feature`", ErrorCode::InvalidOption, [=] { pair(grooves); }});
+    }
+    balls.exemplar.feature = grooves.exemplar.feature = 0;
+    balls.exemplar.resolution = grooves.exemplar.resolution = std::numeric_limits<int>::max();
+    cases.push_back({"`resolution`", ErrorCode::InvalidOption, [=] { make(balls); }});
+    cases.push_back({"`resolution`", ErrorCode::InvalidOption, [=] { pair(grooves); }});
+    balls.exemplar.resolution = 64;
+    balls.exemplar.size = {-8, 64, 64};
+    cases.push_back({"`size`", ErrorCode::InvalidOption, [=] { make(balls); }});
+    refuses(cases);
 }
 
 TEST_CASE("ModelOptions, ModelOutputOptions, boxes and pictures: fields out of their range are refused",

@@ -38,7 +38,8 @@ public:
         bool empty() const { return first == last; }
     };
 
-    explicit ElementSources(ElementKind kind = ElementKind::Voxel) : mKind(kind) {}
+    ElementSources() = default;
+    explicit ElementSources(ElementKind kind) : mKind(kind) {}
 
     ElementKind kind() const { return mKind; }
     /// Number of elements, those without a source included.
@@ -64,7 +65,7 @@ public:
 private:
     void append(const Source& source);
 
-    ElementKind mKind;
+    ElementKind mKind = ElementKind::Voxel;
     std::vector<std::size_t> mEnd;  // [elements] one past the last source of each
     std::vector<Source> mSources;
     std::vector<Index3> mVoxels;

@@ -1,5 +1,5 @@
-#include "libvdbsynth/grid/raster_field.h"
 #include "libvdbsynth/pipeline/outputs.h"
+#include "libvdbsynth/grid/raster_field.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"

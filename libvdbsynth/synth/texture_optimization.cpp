@@ -60,6 +60,7 @@ PatchMap firstArrangement(const Pass& pass, const BlockSynthesisOptions& options
                           const std::vector<const BrickField*>& masks, const RunContext& ctx) {
     BlockSynthesisOptions first = options;
     first.size = pass.target;
+    first.around = {0, 0, 0};
     first.levels = 1;
     for (Border& border : first.border)
         if (border == Border::Tile) border = Border::Cut;

@@ -238,7 +238,9 @@ TEST_CASE("repeatMap: finer models give an analogy's matching finer result", "[p
     const LevelSet repeated = repeatMap(result.map, {&texture, &plain});
     CHECK(voxelSizeOf(*repeated.grid) == Approx(voxelSizeOf(*target.grid) / 2));
     CHECK(solidVoxels(*repeated.grid) / 8 == Approx(solidVoxels(*result.model.grid)).epsilon(0.02));
-    CHECK(measureBand(*repeated.grid).gradientErrorMean < 0.05);
+    // No rougher than what it is finer than.
+    CHECK(measureBand(*repeated.grid).gradientErrorMean <
+          measureBand(*result.model.grid).gradientErrorMean + 0.01);
     REQUIRE(repeated.carried.size() == 1);
     CHECK(openvdb::gridPtrCast<openvdb::FloatGrid>(repeated.carried[0])->activeVoxelCount() >
           repeated.grid->activeVoxelCount() / 2);

@@ -359,9 +359,11 @@ TEST_CASE("synthesize: turned and scaled by maps", "[pipeline][property]") {
     CHECK(measureBand(grid).gradientErrorMean < 0.06);
     checkRepeats(result, {&fibres});
     const std::vector<GridPtr> grids = sourceMapGrids(result.map, grid);
+    // A place between voxels, too.
     REQUIRE(grids.size() == 7);
-    CHECK(grids[5]->getName() == "source_rotation");
-    const auto rotation = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grids[5]);
+    CHECK(grids[5]->getName() == "source_offset");
+    CHECK(grids[6]->getName() == "source_rotation");
+    const auto rotation = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grids[6]);
     CHECK(rotation->tree().getValue(rotation->beginValueOn().getCoord()).z() == Approx(1.5708));
 
     options.rotationMap.reset();

@@ -21,6 +21,7 @@
 #include "libvdbsynth/pipeline/outputs.h"
 #include "libvdbsynth/pipeline/repeat.h"
 #include "libvdbsynth/pipeline/synth.h"
+#include "libvdbsynth/synth/block_synthesis.h"
 #include "libvdbsynth/vdb/mask.h"
 #include "libvdbsynth/vdb/preview.h"
 #include "libvdbsynth/vdb/vdb_file.h"

@@ -68,5 +68,5 @@ TEST_CASE("optimizeTexture: a guide says which part of the exemplar goes where",
         return p == Index3{3, 3, 3} ? std::numeric_limits<float>::quiet_NaN() : float(p.x);
     });
     options.exemplarGuides = {&broken};
-    CHECK(test::thrownBy([&] { optimizeTexture({exemplar}, options); }).code == int(ErrorCode::Unusable));
+    CHECK(test::thrownBy([&] { optimizeTexture({exemplar}, options); }).code == int(ErrorCode::BadData));
 }

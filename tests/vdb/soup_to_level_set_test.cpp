@@ -126,7 +126,7 @@ TEST_CASE("meshToSolid: a sheet is refused with what helps, and helped by it", "
     const test::Thrown thrown = test::thrownBy([&] { meshToSolid(sheet(20), 0.5, 3, "s.obj"); });
     CHECK(thrown.code == int(ErrorCode::Unusable));
     CHECK(test::contains(thrown.message, "s.obj: a sheet with 4 open edges"));
-    CHECK(test::contains(thrown.message, "`open` shell and a `thickness`"));
+    CHECK(test::contains(thrown.message, "`open` shell `thickness` W"));
     SolidOptions shell;
     shell.open = OpenMesh::Shell;
     CHECK(test::contains(test::thrownBy([&] { meshToSolid(sheet(20), 0.5, 3, "s", shell); }).message,

@@ -265,6 +265,7 @@ TEST_CASE("readVdbModel: a transform without size is named", "[vdb][error]") {
 
 TEST_CASE("resampled: the same solid in other voxels, a recorded domain scaled with it", "[vdb][property]") {
     LevelSet model{ball(0.5, kSurfaceName), {}, false};
+    model.domain = solidBox(*model.grid, "the ball");
     const double volume = solidVoxels(*model.grid) * std::pow(voxelSizeOf(*model.grid), 3);
     for (double factor : {0.5, 0.7, 2.0}) {
         const LevelSet other = resampled(model, factor * voxelSizeOf(*model.grid));

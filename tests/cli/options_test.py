@@ -122,9 +122,9 @@ class Moved(CliTest):
 
     def make(self, folder):
         place = {"cwd": self.path(folder)}
-        self.ok("make", "sponge", "a.vdb", "--resolution", 24, **place)
-        self.ok("make", "grid", "b.vdb", "--resolution", 24, **place)
-        self.ok("mask", "box", "-o", "left.vdb", "--box", "0,0,0,23,23,23", **place)
+        self.ok("make", "sponge", "a.vdb", "--resolution", 32, **place)
+        self.ok("make", "grid", "b.vdb", "--resolution", 32, **place)
+        self.ok("mask", "box", "-o", "left.vdb", "--box", "0,0,0,31,31,31", **place)
         self.ok("mask", "box", "-o", "all.vdb", "--box", "-9,-9,-9,63,63,63", **place)
         self.ok("crop", "a.vdb", "-o", "hole.vdb", "--box", "10,10,10,19,19,19", **place)
         self.ok("make", "grooves", "p.vdb", "p2.vdb", "--resolution", 48, **place)
@@ -143,10 +143,10 @@ class Moved(CliTest):
 
     def test_options_of_synth(self):
         synth = ["synth", "@a.vdb", "--size", "2x,1x,1x", "--draft"]
-        default = ["synth", "@a.vdb", "--size", "32,24,24"]
+        default = ["synth", "@a.vdb", "--size", "40,32,32"]
         self.both(*synth, "--exemplar-mask", "@left.vdb")
-        self.both("synth", "@a.vdb", "@b.vdb", "--size", "32,24,24", "--exemplar-map", "@left.vdb")
-        self.both("synth", "@a.vdb", "@b.vdb", "--size", "32,24,24", "--exemplar-map", "@b.vdb")
+        self.both("synth", "@a.vdb", "@b.vdb", "--size", "40,32,32", "--exemplar-map", "@left.vdb")
+        self.both("synth", "@a.vdb", "@b.vdb", "--size", "40,32,32", "--exemplar-map", "@b.vdb")
         self.both(*default, "--guide", "@b.vdb:surface", "--exemplar-guide", "@a.vdb:surface")
         self.both(*default, "--rotation-map", "@left.vdb")
         self.both(*default, "--scale-map", "@all.vdb")

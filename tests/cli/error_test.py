@@ -90,7 +90,7 @@ class BadFiles(CliTest):
             (3, "nan.obj:1: a coordinate is not a finite number", ["convert", "nan.obj", "-o", "x.vdb"]),
             (3, "no/x.vdb: the folder no does not exist", ["convert", "g.vdb", "-o", "no/x.vdb"]),
             (3, "folder.vdb: is a directory", ["convert", "g.vdb", "-o", "folder.vdb"]),
-            (3, "no grid \"vote_source\"", ["repeat", "g.vdb", "g.vdb", "-o", "x.vdb"]),
+            (3, "holds no source map", ["repeat", "g.vdb", "g.vdb", "-o", "x.vdb"]),
             (3, "config.json: not a JSON object", ["synth", "g.vdb", "-o", "x.vdb", "--config", "config.json"]),
             (2, "other.json: blok: unknown option of synth; did you mean block?", ["synth", "g.vdb", "-o", "x.vdb", "--config", "other.json"]),
             (3, "folder.vdb: is a directory", ["synth", "g.vdb", "-o", "x.vdb", "--config", "folder.vdb"]),

@@ -52,7 +52,7 @@ class Doors(CliTest):
         self.fails(2, "give one of them", "convert", "v.npy", "-o", "v.vdb", "--labels", "5", "--threshold", 5)
         self.fails(1, "values of v.npy run from 0 to 110", "convert", "v.npy", "-o", "v.vdb", "--threshold", 500)
         self.write("flat.npy", npy([0, 1, 1, 0] * 16, "(8, 8)"))
-        self.fails(2, "is an image; convert --as volume", "convert", "flat.npy", "-o", "f.vdb", "--threshold", 0.5)
+        self.fails(2, "with --as volume it is a volume", "convert", "flat.npy", "-o", "f.vdb", "--threshold", 0.5)
         self.ok("convert", "flat.npy", "-o", "f.vdb", "--as", "volume")
         self.assertEqual(self.model("f.vdb")["domain"], "0,0,0,7,7,0")
 

@@ -18,8 +18,8 @@ class Repeat(CliTest):
     def same_surface(self, a, b):
         """Meshes of equal grids are equal bytes; metadata of the two files differs."""
         for name in (a, b):
-            self.ok("convert", name, "-o", name + ".ply")
-        self.assertEqual(self.read(a + ".ply"), self.read(b + ".ply"))
+            self.ok("convert", name, "-o", name + ".stl")
+        self.assertEqual(self.read(a + ".stl"), self.read(b + ".stl"))
 
     def python(self, *words):
         done = subprocess.run(["/usr/bin/python3", "-c", READ_MAP, *words], cwd=self.folder, capture_output=True, text=True)
@@ -43,7 +43,7 @@ class Repeat(CliTest):
 
     def test_an_analogy_on_a_mesh(self):
         bunny = sample("meshes/bunny.off")
-        self.ok("make", "pits", "a.vdb", "a2.vdb", "--resolution", 48)
+        self.ok("make", "pits", "a.vdb", "a2.vdb", "--resolution", 64)
         self.ok("analogy", "a.vdb", "a2.vdb", bunny, "-o", "made.vdb", "--source-map", "--resolution", 60, "--direction", "axis:z")
         # The map lies beside the surface; the mesh is read at the map's voxel size.
         self.ok("repeat", "made.vdb", "a2.vdb", bunny, "-o", "again.vdb")

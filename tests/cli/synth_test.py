@@ -39,7 +39,7 @@ class Synth(CliTest):
         self.ok("repeat", "m.vdb", "a.vdb", "b.vdb", "-o", "again.vdb")
         distances = json.loads(self.ok("compare", "m.vdb", "again.vdb", "--json").stdout)["others"][0]["distances"]
         self.assertEqual(distances["surface"]["hausdorff"], 0)
-        self.fails(1, "made with 2 exemplars", "repeat", "m.vdb", "a.vdb", "-o", "again.vdb")
+        self.fails(1, "repeat MAP EXEMPLAR1 EXEMPLAR2", "repeat", "m.vdb", "a.vdb", "-o", "again.vdb")
         # Inside any model the second; a grid of several by its name.
         self.ok("make", "balls", "ball.vdb", "--resolution", 64, "--feature", 40)
         self.ok("convert", "ball.vdb", "-o", "ball.ply")
@@ -99,7 +99,7 @@ class Synth(CliTest):
         self.fails(2, "--hole: missing", "synth", "--keep", "e.vdb", "-o", "x.vdb")
         self.fails(2, "--hole: needs --keep", "synth", "e.vdb", "--size", "2x,2x,1x", "--hole", "auto", "-o", "x.vdb")
         self.fails(2, "--size: has no meaning with --keep", "synth", "--keep", "e.vdb", "--hole", "auto", "--size", "2x,2x,1x", "-o", "x.vdb")
-        self.fails(1, "--hole auto: needs a mesh", "synth", "--keep", "e.vdb", "--hole", "auto", "-o", "x.vdb")
+        self.fails(1, "--hole: needs a mesh", "synth", "--keep", "e.vdb", "--hole", "auto", "-o", "x.vdb")
         self.fails(1, "outside the model's domain", "synth", "--keep", "e.vdb", "--hole", "160,16,16,171,31,31", "-o", "x.vdb")
         self.fails(3, "nothere.vdb", "synth", "--keep", "nothere.vdb", "--hole", "auto", "-o", "x.vdb")
 

@@ -113,6 +113,7 @@ TEST_CASE("inFlags: a field in backquotes becomes the flag of the running comman
     CHECK(inFlags("`SynthOptions::which` and `heights.pixelSize`", "synth") ==
           "--exemplar-map and --pixel-size");
     CHECK(inFlags("over `maxMemory`", "make") == "over --max-memory");
+    CHECK(inFlags("with `imageAsVolume`", "convert") == "with --as volume");
     CHECK(inFlags("`half` 9: too large", "analogy") == "--samples 9: too large");
 }
 

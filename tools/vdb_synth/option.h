@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <string>
 #include <vector>
 
@@ -73,7 +74,8 @@ struct Option {
     bool valueOptional = false;         ///< the next word is its value only if it has one of `extensions`
     /// Fields of the library's option structs that it sets; errors of the library name those.
     std::vector<std::string> fields;
-    std::vector<std::string> oldNames;  ///< refused, with a hint at the present one
+    std::map<std::string, std::string> valueOf;  ///< the option's value that stands for a field being set
+    std::vector<std::string> oldNames;           ///< refused, with a hint at the present one
 
     /// What differs for one command: applied in optionsOf.
     struct Change {
@@ -95,6 +97,9 @@ struct Option {
     Option& repeatable() { return repeats = true, *this; }
     Option& ofTheRun() { return incidental = true, *this; }
     Option& sets(const std::vector<std::string>& names) { return fields = names, *this; }
+    Option& setsBy(const std::string& value, const std::string& field) {
+        return valueOf[field] = value, *this;
+    }
     Option& was(const std::string& old) { return oldNames.push_back(old), *this; }
     Option& butFor(const std::string& command, void (*apply)(Option&)) {
         return changes.push_back({command, apply}), *this;

@@ -63,9 +63,15 @@ std::string lastName(const std::string& field) {
     return field.substr(field.find_last_of(".:") + 1);
 }
 
+// " volume" for the field that `--as volume` sets.
+std::string valueFor(const Option& option, const std::string& field) {
+    const auto value = option.valueOf.find(lastName(field));
+    return value == option.valueOf.end() ? "" : " " + value->second;
+}
+
 std::string flagOf(const std::string& field, const std::string& command) {
     for (const Option& option : optionsOf(command))
-        if (contains(option.fields, lastName(field))) return "--" + option.name;
+        if (contains(option.fields, lastName(field))) return "--" + option.name + valueFor(option, field);
     return field;
 }
 

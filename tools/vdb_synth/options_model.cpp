@@ -148,6 +148,8 @@ std::vector<Option> outputTable() {
             .noting("for standard input also the extension of its kind, such as obj")
             .initially("auto")
             .sets({"as", "imageAsVolume", "points"})
+            .setsBy("volume", "imageAsVolume")
+            .setsBy("points", "points")
             .takenBy({"convert"}),
         real("adaptivity", "A", 0, 1)
             .in(Group::Output)

@@ -146,6 +146,16 @@ TEST_CASE("sourceMapGrids: an analogy's map comes back as it was, as either kind
     CHECK(strongestSourcesIn({}).empty());
 }
 
+TEST_CASE("readSourceMap: a file is parsed once", "[vdb]") {
+    const test::TemporaryFolder folder;
+    writeVdb(folder.path("m.vdb"), sourceMapGrids(analogyOfOne(), anyGrid()), {});
+    int begun = 0;
+    RunContext ctx;
+    ctx.onProgress = [&](const Progress& progress) { begun += progress.reading && progress.done == 0; };
+    CHECK(readSourceMap(folder.path("m.vdb"), ctx).elements.size() == 1);
+    CHECK(begun == 1);
+}
+
 TEST_CASE("sourceMapFrom: hostile maps of analogies are refused", "[vdb][error]") {
     const auto refused = [](const char* name, const char* value) {
         std::vector<GridPtr> grids = sourceMapGrids(analogyOfOne(), anyGrid());

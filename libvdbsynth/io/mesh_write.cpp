@@ -1,6 +1,7 @@
 // The writers behind writeMesh and writePointsPly, but glTF's.
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/geometry/mesh_check.h"
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/mesh_readers.h"
 #include "libvdbsynth/io/text_scanner.h"
@@ -173,6 +174,7 @@ std::string stlBytes(const Mesh& mesh) {
 }  // namespace
 
 void writeMesh(const std::string& path, MeshFormat format, const Mesh& mesh) {
+    requireMesh(mesh, path);
     switch (format) {
         case MeshFormat::Obj:
             return writeWholeFile(path, objText(mesh));

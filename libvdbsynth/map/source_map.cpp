@@ -38,6 +38,13 @@ bool reaches(const IndexBox& box, double farthest) {
     return false;
 }
 
+void requireBlocksAt(const SourceMap& map, const Index3& voxel) {
+    if (map.patches.source.empty() || map.exemplars.empty())
+        throw Error(ErrorCode::InvalidOption, "`map`: has no blocks; only maps of synthesis and fills do");
+    if (!map.targetBox.contains(voxel))
+        throw Error(ErrorCode::InvalidOption, "`voxel`: lies outside the map's target");
+}
+
 // Thrown inside requireSound, which knows whose map it is.
 struct Unsound {
     std::string what;
@@ -128,10 +135,12 @@ Index3 nearestVoxel(const Source& source) {
 }
 
 Source strongestSource(const SourceMap& map, const Index3& voxel) {
+    requireBlocksAt(map, voxel);
     return sourceOf(map, strongestBlock(map.patches, voxel - map.targetBox.min), voxel);
 }
 
 std::vector<Source> votingSources(const SourceMap& map, const Index3& voxel) {
+    requireBlocksAt(map, voxel);
     const Index3 local = voxel - map.targetBox.min, strongest = strongestBlock(map.patches, local);
     if (map.patches.vote == PatchVote::First) return {sourceOf(map, strongest, voxel)};
     const float least = blockWeight(map.patches, strongest, local) / 100;
@@ -175,6 +184,8 @@ IndexBox finerBox(const IndexBox& box, int factor) {
 }
 
 SourceMap finerMap(const SourceMap& map, int factor) {
+    requireOption(factor >= 1 && factor <= 64, "factor", std::to_string(factor),
+                  "a whole number from 1 to 64");
     SourceMap scaled = map;
     if (factor == 1) return scaled;
     const double farthest = kFarthest / factor - 1;

@@ -96,6 +96,7 @@ struct SourceMap {
 /// What has the largest weight at a voxel of a map by blocks. With a variant the position lies between
 /// voxels.
 /// @param voxel  inside the target box
+/// @throw Error InvalidOption (a map without blocks, a voxel outside)
 Source strongestSource(const SourceMap& map, const Index3& voxel);
 
 /// All sources that have at least a hundredth of the largest weight at a voxel of a map by blocks; of a map

@@ -9,8 +9,9 @@
 namespace vdbsynth {
 
 struct FillOptions {
-    int block = 0;   ///< see BlockSynthesisOptions; 0: 8 where the hole is closed already
-    int levels = 0;  ///< see BlockSynthesisOptions; 0: one where the hole is closed already, see fillHoles
+    int block =
+        0;  ///< [voxels] side of the matched blocks, 4 to 256; 0: 16, 8 where the hole is closed already
+    int levels = 0;  ///< passes, 1 to 8; 0: as many as useful, one where the hole is closed already
 };
 
 /// @param exemplar  or null

@@ -36,8 +36,8 @@ void noteIfOther(const LevelSet& model, const std::string& hash, const std::stri
 }
 
 std::string nameOf(const SourceMap& map, std::size_t e) {
-    const std::string what = map.method == MapMethod::Analogy ? "the textured model" : "the exemplar";
-    return map.exemplars.size() > 1 ? what + " " + std::to_string(e + 1) : what;
+    const std::string what = map.method == MapMethod::Analogy ? "textured model" : "exemplar";
+    return map.exemplars.size() > 1 ? what + " " + std::to_string(e + 1) : "the " + what;
 }
 
 LevelSet repeatSynthesis(const SourceMap& map, int factor, const LevelSets& exemplars,
@@ -97,8 +97,12 @@ LevelSet repeated(const SourceMap& given, const LevelSets& inputs, const RepeatO
 void validate(const RepeatOptions& options, const SourceMap& given, const LevelSets& inputs) {
     requireOption(options.halfWidth == 0 || (options.halfWidth >= 1.5f && options.halfWidth <= 100),
                   "halfWidth", roundedText(double(options.halfWidth), 6), "from 1.5 to 100 voxels");
-    requireOption(options.carried == CarriedValues::Copied || given.method == MapMethod::Synthesis, "carried",
-                  "blended", "copied for the map of an analogy or a fill, whose voxels have one source each");
+    if (options.carried == CarriedValues::Blended && given.method != MapMethod::Synthesis)
+        throw Error(
+            ErrorCode::InvalidOption,
+            "`carried`: means need the several sources a voxel that only a map of a synthesis has; this "
+            "one is of " +
+                std::string(given.method == MapMethod::Fill ? "a filled hole" : "an analogy"));
     requireSound(given);
     if (inputs.size() != given.inputs())
         throw Error(ErrorCode::ShapeMismatch,

@@ -16,23 +16,26 @@ struct SynthOptions {
     TargetSize size = TargetSize::multiples(2, 2, 2);  ///< at least the domain, at most 1048576 voxels a side
     std::optional<IndexBox> exemplarBox;               ///< overrides the (first) exemplar's domain
     std::array<std::optional<Border>, 3>
-        border;     ///< empty: cut where a domain is recorded or given, else object
-    int block = 0;  ///< see BlockSynthesisOptions
-    int levels = 0;
-    int drift = 0;
+        border;      ///< empty: cut where a domain is recorded or given, else object
+    int block = 0;   ///< [voxels] side of the matched blocks, 4 to 256; 0: from the exemplar, at most 16
+    int levels = 0;  ///< passes, coarse to fine, 1 to 8; 0: as many as useful
+    int drift = 0;   ///< [voxels] how far a source may be from its own place along an axis that keeps its
+                     ///< length, 0 to 2^20
     SynthesisMethod method = SynthesisMethod::Default;
     bool draft = false;         ///< work at half the resolution and read the result at the full one
     GridConstPtr exemplarMask;  ///< sources only where this grid is active; its box is the domain unless
                                 ///< exemplarBox says another; null: everywhere; of the first exemplar
-    /// Controls, read in the world of the target (guides of exemplars in theirs), see control.h; null: none.
+    /// Controls, read in the world of the target (guides of exemplars in theirs); null: none.
     GridConstPtr exemplarMap;                  ///< which exemplar where; needs several
     GridConstPtr rotationMap, scaleMap;        ///< by how much what is copied is turned and scaled
     GridConstPtr guide;                        ///< a scalar by which parts of the exemplars are placed
     std::vector<GridConstPtr> exemplarGuides;  ///< the same scalar over each exemplar
-    double guideWeight = 4;                    ///< 0.001 to 1000, see BlockSynthesisOptions
-    double longestRun = 0.3;                   ///< 0.01 to 1, see BlockSynthesisOptions
-    std::string indexCache;                    ///< BlockIndexOptions::cacheFolder; empty: none
-    float halfWidth = kHalfWidth;              ///< [voxels] of the result
+    /// A difference of the guide as large as its standard deviation over the exemplars costs this much
+    /// [voxels^2], 0.001 to 1000.
+    double guideWeight = 4;
+    double longestRun = 0.3;       ///< share of an exemplar that may be copied in one piece, 0.01 to 1
+    std::string indexCache;        ///< folder in which search indices are kept between runs; empty: none
+    float halfWidth = kHalfWidth;  ///< [voxels] of the result
     CarriedValues carried = CarriedValues::Copied;
 };
 

@@ -7,6 +7,8 @@
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/mesh_conversion.h"
 
+#include "libvdbsynth/vdb/vdb_file.h"
+
 #include <openvdb/openvdb.h>
 #include <openvdb/tree/LeafManager.h>
 
@@ -247,6 +249,7 @@ std::vector<GridPtr> attributesToGrids(const PointCloud& cloud, const openvdb::F
 
 Attributes gridsToAttributes(const std::vector<GridPtr>& grids, const std::vector<Vec3f>& places,
                              const RunContext& ctx) {
+    requireGrids(grids);
     Attributes attributes;
     for (const GridPtr& grid : grids) {
         if (grid->getGridClass() == openvdb::GRID_LEVEL_SET || grid->getName().empty()) continue;

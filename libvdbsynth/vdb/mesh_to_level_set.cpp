@@ -4,6 +4,7 @@
 
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/geometry/mesh_check.h"
 
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
@@ -220,6 +221,7 @@ void validate(const SolidOptions& options) {
 FloatGridPtr meshToSolid(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
                          const SolidOptions& options, const RunContext& ctx) {
     checkOptions(voxelSize, halfWidth);
+    requireMesh(mesh, name);
     validate(options);
     const bool shell = options.open == OpenMesh::Shell;
     requireOption(!shell || options.thickness >= voxelSize, "thickness", std::to_string(options.thickness),
@@ -262,6 +264,7 @@ FloatGridPtr meshToSolid(const Mesh& mesh, double voxelSize, double halfWidth, c
 FloatGridPtr meshToLevelSet(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
                             const RunContext& ctx) {
     checkOptions(voxelSize, halfWidth);
+    requireMesh(mesh, name);
     const FloatGridPtr grid = openVdbLevelSet(mesh, voxelSize, halfWidth, /* exact= */ false, name, ctx);
     const std::string wrong = missingVolume(volumesOf(*grid, mesh, voxelSize), mesh, voxelSize);
     if (!wrong.empty()) throw Error(ErrorCode::Unusable, name + ": " + wrong);

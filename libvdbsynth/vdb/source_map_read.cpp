@@ -360,6 +360,7 @@ private:
 
 SourceMap sourceMapFrom(const std::string& path, const std::vector<GridPtr>& grids, const RunContext& ctx) {
     throwIfCancelled(ctx);
+    requireGrids(grids);
     GridPtr main = gridNamed(grids, "vote_source");
     if (!main) main = gridNamed(grids, "source");
     if (!main)
@@ -374,6 +375,7 @@ SourceMap readSourceMap(const std::string& path, const RunContext& ctx) {
 }
 
 std::vector<MappedVoxel> strongestSourcesIn(const std::vector<GridPtr>& grids) {
+    requireGrids(grids);
     std::vector<MappedVoxel> voxels;
     const GridPtr source = gridNamed(grids, "source");
     if (!source) return voxels;
@@ -392,6 +394,7 @@ std::vector<MappedVoxel> strongestSourcesIn(const std::vector<GridPtr>& grids) {
 }
 
 bool hasSourcesIn(const std::vector<GridPtr>& grids, const openvdb::FloatGrid& like) {
+    requireGrids(grids);
     const GridPtr source = gridNamed(grids, "source");
     if (!source || !(source->isType<openvdb::Vec3IGrid>() || source->isType<openvdb::Vec3SGrid>()))
         return false;

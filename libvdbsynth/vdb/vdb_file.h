@@ -23,6 +23,9 @@ struct GridSummary {
     std::vector<std::pair<std::string, std::string>> metadata;
 };
 
+/// @throw Error InvalidOption (one is null); every function here that takes grids does so
+void requireGrids(const std::vector<GridPtr>& grids);
+
 std::vector<GridSummary> summarizeGrids(const std::vector<GridPtr>& grids);
 
 /// File metadata, as name and value.
@@ -75,6 +78,9 @@ FloatGridPtr readVdbFloatGrid(const std::string& path, const std::string& name, 
 GridPtr readVdbGrid(const std::string& path, const std::string& name, const RunContext& ctx = {});
 /// All grids of a file. @throw Error as readVdbModel
 std::vector<GridPtr> readVdbGrids(const std::string& path, const RunContext& ctx = {});
+
+/// A grid's name, for callers without OpenVDB's headers.
+std::string nameOf(const openvdb::GridBase& grid);
 
 /// Writes grids to a VDB file. The random UUID in OpenVDB's header is replaced by one derived from the
 /// content, so equal grids and metadata give equal bytes.

@@ -25,6 +25,7 @@ bool isLevelSet(const openvdb::FloatGrid& grid) {
 
 // The grid itself, whatever kind of numbers it holds.
 GridPtr pickGrid(const std::string& path, const std::vector<GridPtr>& grids, const VdbReadOptions& options) {
+    requireGrids(grids);
     std::string names;
     GridPtr levelSet, fog;
     for (const GridPtr& grid : grids) {
@@ -196,6 +197,8 @@ LevelSet resampled(const LevelSet& model, double voxelSize, const RunContext& ct
     requireOption(voxelSize > 0 && voxelSize < 1e30, "voxelSize", roundedText(voxelSize, 6),
                   "above 0 (world)");
     const double ratio = voxelSizeOf(*model.grid) / voxelSize;
+    requireOption(ratio < 1e4 && ratio > 1e-6, "voxelSize", roundedText(voxelSize, 6),
+                  "from a ten thousandth of the model's voxels to a million times theirs");
     requireMemory(ctx, double(model.grid->activeVoxelCount()) * ratio * ratio * 40,
                   "voxels of " + std::to_string(voxelSize), "use larger ones");
     Stage stage(ctx, "resampling", 1);

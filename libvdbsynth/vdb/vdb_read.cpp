@@ -44,7 +44,8 @@ struct Kinds : openvdb::GridBase {
 
 // OpenVDB refuses a whole file for one grid of a kind that it does not know. With a name for that kind to
 // find it opens, and only the reading of that grid fails.
-void openWithStrangers(openvdb::io::File& file) {
+// @return how many kinds it did not know
+std::size_t openWithStrangers(openvdb::io::File& file) {
     std::vector<std::string> strangers;
     const auto forget = [&strangers] {
         for (const std::string& type : strangers) Kinds::unregisterGrid(type);
@@ -52,16 +53,19 @@ void openWithStrangers(openvdb::io::File& file) {
     for (;;) try {
             file.open(/* delayLoad= */ false);
             forget();
-            return;
+            return strangers.size();
         } catch (const openvdb::LookupError& error) {
             const std::string text = error.what(), before = "Grid type ", after = " is not registered";
             const std::size_t begin = text.find(before), end = text.find(after);
             const bool known = begin != std::string::npos && end != std::string::npos && end > begin;
-            if (!known || strangers.size() == 64) {
+            const std::string type =
+                known ? text.substr(begin + before.size(), end - begin - before.size()) : "";
+            // All kinds of grids are named so; another name is none but what a cut file left of one.
+            if (type.compare(0, 5, "Tree_") != 0 || strangers.size() == 64) {
                 forget();
                 throw;
             }
-            strangers.push_back(text.substr(begin + before.size(), end - begin - before.size()));
+            strangers.push_back(type);
             Kinds::registerGrid(strangers.back(), [] { return openvdb::GridBase::Ptr(); });
         } catch (...) {
             forget();
@@ -70,7 +74,7 @@ void openWithStrangers(openvdb::io::File& file) {
 }
 
 // Opens after the checks whose messages OpenVDB's own would not give. Null for a gzip file.
-std::unique_ptr<openvdb::io::File> openVdb(const std::string& path) {
+std::unique_ptr<openvdb::io::File> openVdb(const std::string& path, std::size_t& strangers) {
     openvdb::initialize();
     struct stat status {};
     if (::stat(path.c_str(), &status) != 0) throw Error(ErrorCode::Io, path + ": no such file");
@@ -84,7 +88,7 @@ std::unique_ptr<openvdb::io::File> openVdb(const std::string& path) {
     if (probe.gcount() > 2 && isGzip(std::string(magic, 3))) return nullptr;
     if (std::string(magic, 4) != " BDV") throw Error(ErrorCode::BadData, path + ": not a VDB file");
     auto file = std::make_unique<openvdb::io::File>(path);
-    whileParsing(path, [&] { openWithStrangers(*file); });
+    whileParsing(path, [&] { strangers = openWithStrangers(*file); });
     return file;
 }
 
@@ -114,7 +118,8 @@ VdbContents readPackedVdb(const std::string& path) {
 
 VdbContents readVdb(const std::string& path, const RunContext& ctx) {
     Stage stage(ctx, "reading " + path, 1, /* reading= */ true);
-    const auto file = openVdb(path);
+    std::size_t strangers = 0;
+    const auto file = openVdb(path, strangers);
     VdbContents contents;
     if (!file) {
         contents = readPackedVdb(path);
@@ -126,12 +131,18 @@ VdbContents readVdb(const std::string& path, const RunContext& ctx) {
         for (auto name = file->beginName(); name != file->endName(); ++name) try {
                 contents.grids.push_back(file->readGrid(*name));
             } catch (const openvdb::KeyError&) {
+                // Where all kinds are known, a grid that is not found lies beyond the file's end.
+                if (strangers == 0) throw Error(ErrorCode::BadData, path + ": truncated or corrupt");
                 message(ctx, MessageLevel::Warning,
                         path + ": grid \"" + *name + "\" is of a kind that OpenVDB does not know; left out");
             }
     });
     stage.advance();
     return contents;
+}
+
+std::string nameOf(const openvdb::GridBase& grid) {
+    return grid.getName();
 }
 
 std::vector<GridPtr> readVdbGrids(const std::string& path, const RunContext& ctx) {
@@ -148,7 +159,13 @@ GridPtr readVdbGrid(const std::string& path, const std::string& name, const RunC
                 path + ": no grid \"" + name + "\"; it has " + (names.empty() ? "no grids" : names));
 }
 
+void requireGrids(const std::vector<GridPtr>& grids) {
+    for (const GridPtr& grid : grids)
+        if (!grid) throw Error(ErrorCode::InvalidOption, "`grids`: one of them is null");
+}
+
 std::vector<GridSummary> summarizeGrids(const std::vector<GridPtr>& grids) {
+    requireGrids(grids);
     std::vector<GridSummary> summaries;
     for (const GridPtr& grid : grids) {
         GridSummary summary;

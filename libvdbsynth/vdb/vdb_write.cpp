@@ -46,6 +46,7 @@ void replaceUuid(const std::string& path) {
 }  // namespace
 
 void writeVdb(const std::string& path, const std::vector<GridPtr>& grids, const VdbMetadata& metadata) {
+    requireGrids(grids);
     openvdb::initialize();
     openvdb::MetaMap map;
     for (const auto& [name, value] : metadata) map.insertMeta(name, openvdb::StringMetadata(value));

@@ -71,6 +71,31 @@ class Repeat(CliTest):
         self.assertNotEqual(self.python("whole.vdb").returncode, 0)
         self.same_surface("more.vdb", "whole.vdb")
 
+    def test_models_in_another_order(self):
+        self.ok("make", "grooves", "a.vdb", "a2.vdb", "--resolution", 48)
+        self.ok("make", "three-tori", "b.vdb", "--resolution", 48)
+        self.ok("analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "made.vdb", "--source-map", "map.vdb", "--levels", 1, "--sweeps", 1)
+        self.fails(1, "b.vdb: was model 2 of the map's run", "repeat", "map.vdb", "b.vdb", "a2.vdb", "-o", "o.vdb")
+        self.fails(2, "--resolution", "repeat", "map.vdb", "a2.vdb", "b.vdb", "-o", "o.vdb", "--resolution", 30)
+        size = len(self.read("map.vdb"))
+        self.write("cut.vdb", self.read("map.vdb")[: size // 2])
+        self.fails(3, "truncated or corrupt", "repeat", "cut.vdb", "a2.vdb", "b.vdb", "-o", "o.vdb")
+
+    def test_a_map_replaces_no_model(self):
+        self.ok("make", "grid", "s.vdb", "--resolution", 40)
+        self.ok("make", "grid", "g.vdb", "--resolution", 40, "--seed", 2)
+        before = self.read("s.vdb")
+        self.fails(2, "put a --source-map without FILE last", "synth", "-o", "x.vdb", "--size", "1x,1x,1x", "--source-map", "s.vdb", "g.vdb")
+        self.assertEqual(self.read("s.vdb"), before)
+        self.fails(2, "--map-types: needs --source-map", "synth", "g.vdb", "-o", "x.vdb", "--size", "1x,1x,1x", "--map-types", "float")
+        # A map is replaced by a map, and a report replays a run that wrote one.
+        for _ in range(2):
+            self.ok("synth", "g.vdb", "-o", "x.vdb", "--size", "1x,1x,1x", "--source-map", "m.vdb")
+        self.ok("synth", "g.vdb", "-o", "y.vdb", "--size", "1x,1x,1x", "--source-map", "--report", "r.json")
+        self.assertIn('"source-map": true', self.read("r.json").decode())
+        self.ok("synth", "-o", "z.vdb", "--config", "r.json")
+        self.assertEqual(self.read("y.vdb"), self.read("z.vdb"))
+
     def test_what_is_no_map(self):
         self.ok("make", "grid", "grid.vdb", "--resolution", 40)
         self.fails(3, "holds no source map", "repeat", "grid.vdb", "grid.vdb", "-o", "o.vdb")

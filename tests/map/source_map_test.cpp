@@ -51,6 +51,16 @@ TEST_CASE("strongestSource: by hand, for blocks and for variants", "[map][oracle
     CHECK(rotated.rotation.z == Approx(kPi / 2));
 }
 
+TEST_CASE("strongestSource: a map without blocks and a voxel outside are refused", "[map][error]") {
+    const auto code = [](const SourceMap& map, const Index3& voxel) {
+        return test::thrownBy([&] { strongestSource(map, voxel); }).code;
+    };
+    CHECK(code({}, {0, 0, 0}) == int(ErrorCode::InvalidOption));
+    CHECK(code(threeBlocks(), {100, 0, 0}) == int(ErrorCode::InvalidOption));
+    CHECK(test::thrownBy([] { votingSources({}, {0, 0, 0}); }).code == int(ErrorCode::InvalidOption));
+    CHECK(test::thrownBy([] { finerMap(threeBlocks(), 0); }).code == int(ErrorCode::InvalidOption));
+}
+
 TEST_CASE("votingSources: all blocks over a voxel, by their weights", "[map][oracle]") {
     SourceMap map = threeBlocks();
     const std::vector<Source> sources = votingSources(map, {2, 3, 3});

@@ -2,10 +2,13 @@
 #include "tools/vdb_synth/command.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/hash.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/pipeline/outputs.h"
 #include "libvdbsynth/pipeline/repeat.h"
 #include "libvdbsynth/vdb/source_map_grids.h"
+
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -25,6 +28,62 @@ std::string wanted(const SourceMap& map) {
     return text + (target == 0 ? "" : analogy ? " B" : " KEPT");
 }
 
+// The files of a run in the order in which repeat takes them, by their hashes; empty where the map's file
+// does not tell them, as when a program wrote it.
+std::vector<std::string> filesOf(const SourceMap& map, const VdbMetadata& metadata) {
+    std::vector<std::string> all, ordered;
+    for (const auto& [name, value] : metadata) {
+        if (name != "vdbsynth:inputs") continue;
+        const nlohmann::json inputs = nlohmann::json::parse(value, nullptr, /* allow_exceptions= */ false);
+        if (!inputs.is_array()) return {};
+        for (const nlohmann::json& input : inputs)
+            all.push_back(input.is_object() ? input.value("hash", std::string()) : std::string());
+    }
+    // As the commands note what they load: synth its exemplars; synth --keep the kept model and perhaps the
+    // hole's, and the exemplar last; analogy A, A2 for each pair, then B.
+    const std::size_t exemplars = map.exemplars.size();
+    if (map.method == MapMethod::Synthesis && all.size() >= exemplars)
+        ordered.assign(all.begin(), all.begin() + std::ptrdiff_t(exemplars));
+    if (map.method == MapMethod::Analogy && all.size() > 2 * exemplars) {
+        for (std::size_t e = 0; e < exemplars; ++e) ordered.push_back(all[2 * e + 1]);
+        ordered.push_back(all[2 * exemplars]);
+    }
+    if (map.method == MapMethod::Fill && !map.hole.fromSelf && all.size() >= 2)
+        ordered = {all.back(), all.front()};
+    return ordered;
+}
+
+// Models that are the run's own, each in another's place, would make nonsense.
+void requireOrder(const Run& run, const SourceMap& map, const VdbMetadata& metadata) {
+    const std::vector<std::string>& inputs = run.arguments.inputs;
+    const std::vector<std::string> files = filesOf(map, metadata);
+    if (files.size() + 1 != inputs.size()) return;
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        const std::string hash = fileHash(inputs[i + 1]);
+        if (hash == files[i]) continue;
+        for (std::size_t j = 0; j < files.size(); ++j)
+            if (hash == files[j])
+                throw Error(ErrorCode::ShapeMismatch,
+                            run.withoutTemporaries(inputs[i + 1]) + ": was model " + std::to_string(j + 1) +
+                                " of the map's run and is model " + std::to_string(i + 1) +
+                                " here; the order is repeat MAP" + wanted(map));
+    }
+}
+
+// The voxel size that a map of single voxels or of a hole asks of a model is its own affair.
+void requireNoSize(const Run& run, const SourceMap& map) {
+    if (map.method == MapMethod::Synthesis) return;
+    for (const char* name : {"voxel-size", "resolution"})
+        if (run.arguments.has(name))
+            throw Error(ErrorCode::InvalidOption,
+                        std::string("--") + name + ": the map of " +
+                            (map.method == MapMethod::Fill ? "a filled hole" : "an analogy") +
+                            " says at which voxel size its models are read" +
+                            (map.method == MapMethod::Fill
+                                 ? ""
+                                 : "; for a finer result convert A2 to a half or a third of its voxels"));
+}
+
 // Every model at the voxel size that the map asks of it. A .vdb of exemplars may be finer; all else follows.
 std::vector<LevelSet> loadInputs(Run& run, const SourceMap& map) {
     const std::vector<std::string> paths(run.arguments.inputs.begin() + 1, run.arguments.inputs.end());
@@ -36,15 +95,14 @@ std::vector<LevelSet> loadInputs(Run& run, const SourceMap& map) {
     double factor = 1;
     for (std::size_t i = 0; i < paths.size(); ++i) {
         const bool target = map.method != MapMethod::Synthesis && i + 1 == paths.size();
-        ModelOptions own = options;
-        if (target || models.size() > 0) {
-            own.voxelSize = target ? map.target.voxelSize / factor : map.voxelSize / factor;
-            own.resolution = 0;
-        } else if (!sized && extensionOf(paths[i]) != "vdb") {
-            own.voxelSize = map.voxelSize;
+        const bool own = extensionOf(paths[i]) == "vdb" && (models.empty() || map.method == MapMethod::Fill);
+        ModelOptions of = options;
+        if (!own && !(sized && models.empty())) {
+            of.voxelSize = (target ? map.target.voxelSize : map.voxelSize) / factor;
+            of.resolution = 0;
         }
-        if (map.method == MapMethod::Analogy && !target) own.grid.clear();
-        models.push_back(run.load(paths[i], own));
+        if (map.method == MapMethod::Analogy && !target) of.grid.clear();
+        models.push_back(run.load(paths[i], of));
         if (models.size() == 1 && !target)
             factor = std::max(1.0, std::round(map.voxelSize / voxelSizeOf(*models.front().grid)));
     }
@@ -63,12 +121,16 @@ void repeat(Run& run) {
     RepeatOptions options;
     options.carried = carriedValues(run.arguments);
     if (run.arguments.has("half-width")) options.halfWidth = float(run.modelOptions().halfWidth);
-    const SourceMap map = readSourceMap(mapPath, run.context);
+    const VdbContents contents = readVdb(mapPath, run.context);
+    const SourceMap map = sourceMapFrom(mapPath, contents.grids, run.context);
     run.noteInput(mapPath);
     if (run.arguments.inputs.size() - 1 != map.inputs())
-        throw Error(ErrorCode::ShapeMismatch, mapPath + ": its map is repeated as: repeat MAP" + wanted(map) +
-                                                  "; " + std::to_string(run.arguments.inputs.size() - 1) +
-                                                  " models are given after it");
+        throw Error(ErrorCode::ShapeMismatch,
+                    mapPath + ": its map is repeated as: repeat MAP" + wanted(map) + "; " +
+                        std::to_string(run.arguments.inputs.size() - 1) +
+                        (run.arguments.inputs.size() == 2 ? " model is" : " models are") + " given after it");
+    requireNoSize(run, map);
+    requireOrder(run, map, contents.metadata);
     std::vector<LevelSet> models = loadInputs(run, map);
     keepCarried(run.arguments, models);
     std::vector<const LevelSet*> pointers;

@@ -56,6 +56,10 @@ void mergeConfig(Arguments& arguments) {
                 throw Error(ErrorCode::InvalidOption,
                             path + ": " + name + " " + values[0] + ": must be true or false");
         }
+        if (option->valueOptional && (values[0] == "true" || values[0] == "false")) {
+            if (values[0] == "true") arguments.values[name] = {kNoValue};
+            continue;
+        }
         arguments.values[name] = values;
     }
 }

@@ -5,6 +5,7 @@
 #include "libvdbsynth/vdb/source_map_grids.h"
 
 #include <algorithm>
+#include <filesystem>
 
 namespace vdbsynth::cli {
 
@@ -13,14 +14,40 @@ bool anyVdb(const std::vector<std::string>& paths) {
                        [](const std::string& path) { return extensionOf(path) == "vdb"; });
 }
 
+namespace {
+
+// The word behind --source-map may be meant as an input: a model is not replaced by a map unasked.
+void requireNoModel(const Arguments& arguments, const std::string& path) {
+    std::error_code ignored;
+    if (arguments.has("force") || !std::filesystem::is_regular_file(path, ignored)) return;
+    std::vector<GridPtr> grids;
+    try {
+        grids = readVdbGrids(path);
+    } catch (const Error&) {
+        return;  // nothing that could be lost as a model
+    }
+    if (grids.empty() || std::any_of(grids.begin(), grids.end(),
+                                     [](const GridPtr& grid) { return isOfSourceMap(nameOf(*grid)); }))
+        return;
+    throw Error(ErrorCode::InvalidOption,
+                "--source-map " + path +
+                    ": would replace a file that is no source map; give another name, put a --source-map "
+                    "without FILE last, or give --force");
+}
+
+}  // namespace
+
 MapPlace mapPlaceOf(const Arguments& arguments, const std::vector<std::string>& outputs) {
     MapPlace place{arguments.text("source-map"), false};
+    if (place.path.empty() && arguments.has("map-types"))
+        throw Error(ErrorCode::InvalidOption, "--map-types: needs --source-map, which writes the map");
     place.inside = place.path == kNoValue;
     if (place.path.empty()) return place;
     if (place.inside && !anyVdb(outputs))
         throw Error(ErrorCode::InvalidOption,
                     "--source-map: without a file it goes into a .vdb output, and there is none; give "
                     "--source-map FILE.vdb");
+    if (!place.inside) requireNoModel(arguments, place.path);
     return place;
 }
 

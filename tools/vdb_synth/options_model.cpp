@@ -23,7 +23,13 @@ std::vector<Option> inputTable() {
             .takenBy(with(kModel, {"make"}))
             .butFor("make", [](Option& o) { o.initially("1").noting("").in(Group::Result); })
             .butFor("mask", [](Option& o) { o.otherwiseIs("1 for box and ball"); })
-            .butFor("analogy", [](Option& o) { o.says("side of a voxel of B"); }),
+            .butFor("analogy", [](Option& o) { o.says("side of a voxel of B"); })
+            .butFor("repeat",
+                    [](Option& o) {
+                        o.says("side of a voxel of the exemplars, of a map of synth")
+                            .otherwiseIs("a VDB's own, else the map's")
+                            .noting("other maps ask for their own");
+                    }),
         whole("resolution", "N", 2, 100000)
             .in(Group::Input)
             .says("voxels along the longest side")
@@ -31,7 +37,12 @@ std::vector<Option> inputTable() {
             .takenBy(with(kModel, {"make"}))
             .butFor("make",
                     [](Option& o) { o.from(16, 4096).initially("64").otherwiseIs("").in(Group::Result); })
-            .butFor("analogy", [](Option& o) { o.says("voxels along the longest side of B"); }),
+            .butFor("analogy", [](Option& o) { o.says("voxels along the longest side of B"); })
+            .butFor("repeat",
+                    [](Option& o) {
+                        o.says("voxels along the longest side of the exemplars, of a map of synth")
+                            .otherwiseIs("a VDB's own voxels, else the map's");
+                    }),
         whole("exemplar-resolution", "N", 2, 100000)
             .in(Group::Input)
             .says("voxels along the longest side of a mesh A")
@@ -171,12 +182,17 @@ std::vector<Option> outputTable() {
             .in(Group::Output)
             .says("attributes and grids of the exemplar to transfer: all, or names with commas")
             .initially("all")
-            .takenBy({"synth", "analogy", "repeat"}),
+            .takenBy({"synth", "analogy", "repeat"})
+            .butFor("analogy",
+                    [](Option& o) {
+                        o.says("attributes and grids of A2 to transfer: all, or names with commas");
+                    }),
         flag("carry-blend")
             .in(Group::Output)
             .says("transfer weighted means of numbers and vectors instead of copies")
             .sets({"carried", "carryBlend"})
-            .takenBy({"synth", "repeat"}),
+            .takenBy({"synth", "repeat"})
+            .butFor("repeat", [](Option& o) { o.noting("only with a map of synth without --keep"); }),
         map.says("also write the source map, what was copied from where")
             .noting("without FILE into the .vdb output")
             .takenBy({"synth", "analogy"}),

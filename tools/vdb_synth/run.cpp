@@ -48,7 +48,8 @@ struct Run::Impl {
     static nlohmann::json givenOptions(const Arguments& arguments) {
         nlohmann::json json = nlohmann::json::object();
         for (const auto& [name, values] : arguments.values)
-            if (name != "report" && name != "config") json[name] = asJson(values);
+            if (name != "report" && name != "config")
+                json[name] = values.front() == kNoValue ? nlohmann::json(true) : asJson(values);
         json["inputs"] = arguments.inputs;
         return json;
     }

@@ -98,9 +98,7 @@ class Help(CliTest):
             self.assertLessEqual({"--output", "--threads", "--config", "--report", "--force", "--help"}, shown)
             # What is shown is taken: another error than that of an option nobody knows.
             for option in shown - {"--help", "--version"}:
-                for words in ([option], [option, "x"]):
-                    self.assertNotIn("is no option of", self.run_tool(command, *words).stderr)
-                    self.assertNotIn("unknown option", self.run_tool(command, *words).stderr)
+                self.assertNotRegex(self.run_tool(command, option, "x").stderr, "is no option of|unknown option")
 
     def test_lines_fit_a_terminal(self):
         for command in COMMANDS:

@@ -66,7 +66,7 @@ void removeIslands(BrickField& field, const std::vector<ExemplarSamples>& textur
     }
 }
 
-// A texture that is deeper than the map's own ends where the map has no sources any more.
+// A texture that reaches farther than the map's own, or another plain model, ends where there are no sources.
 void warnIfCut(const SourceMap& map, int factor, const BrickField& made, const RunContext& ctx) {
     const VoxelTable table = VoxelTable::of(map.targetBox, map.elements.voxels());
     const Index3 first = finerBox(map.targetBox, factor).min;
@@ -82,9 +82,9 @@ void warnIfCut(const SourceMap& map, int factor, const BrickField& made, const R
         }
     if (double(cut) > kFewCut * double(table.size()))
         message(ctx, MessageLevel::Warning,
-                "the texture reaches farther from the plain surface than the one that the map was made with "
-                "and is cut off there (" +
-                    std::to_string(cut) + " voxels); run analogy with it instead");
+                "the result ends where the map has no sources, and is cut off there (" + std::to_string(cut) +
+                    " voxels): the texture reaches farther from the plain surface than the map's own, or the "
+                    "plain model lies elsewhere; run analogy with these models instead");
 }
 
 }  // namespace

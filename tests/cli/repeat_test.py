@@ -77,6 +77,7 @@ class Repeat(CliTest):
         self.ok("analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "made.vdb", "--source-map", "map.vdb", "--levels", 1, "--sweeps", 1)
         self.fails(1, "b.vdb: was model 2 of the map's run", "repeat", "map.vdb", "b.vdb", "a2.vdb", "-o", "o.vdb")
         self.fails(2, "--resolution", "repeat", "map.vdb", "a2.vdb", "b.vdb", "-o", "o.vdb", "--resolution", 30)
+        self.fails(3, "none.vdb: no such file", "repeat", "map.vdb", "none.vdb", "b.vdb", "-o", "o.vdb")
         size = len(self.read("map.vdb"))
         self.write("cut.vdb", self.read("map.vdb")[: size // 2])
         self.fails(3, "truncated or corrupt", "repeat", "cut.vdb", "a2.vdb", "b.vdb", "-o", "o.vdb")

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 namespace vdbsynth::cli {
 namespace {
@@ -59,6 +60,8 @@ void requireOrder(const Run& run, const SourceMap& map, const VdbMetadata& metad
     const std::vector<std::string> files = filesOf(map, metadata);
     if (files.size() + 1 != inputs.size()) return;
     for (std::size_t i = 0; i < files.size(); ++i) {
+        std::error_code ignored;
+        if (!std::filesystem::is_regular_file(inputs[i + 1], ignored)) return;  // its reader says why
         const std::string hash = fileHash(inputs[i + 1]);
         if (hash == files[i]) continue;
         for (std::size_t j = 0; j < files.size(); ++j)

@@ -314,25 +314,12 @@ struct Folder {
 };
 constexpr const char* kMark = "/";
 
-// The file that a URI names, percent-decoded by tinygltf, or why it is not read.
-std::string resolved(const Folder& folder, const std::string& uri, std::string& problem) {
-    namespace fs = std::filesystem;
-    const fs::path relative = fs::path(uri).lexically_normal();
-    if (uri.find('\0') != std::string::npos)
-        problem = "has a name that no file has";
-    else if (uri.find("://") != std::string::npos)
-        problem = "is an address; only files beside or below the glTF file are read";
-    else if (relative.is_absolute() || (!relative.empty() && *relative.begin() == ".."))
-        problem = "is not beside or below the glTF file; only such files are read";
-    return (fs::path(folder.path) / relative).string();
-}
-
 bool findUri(const std::string& name, void* user) {
     Folder& folder = *static_cast<Folder*>(user);
     if (name.compare(0, 1, kMark) != 0) return false;
     const std::string uri = name.substr(1);
     std::string why, shown = uri.substr(0, 200);
-    resolved(folder, uri, why);
+    pathBelow(folder.path, uri, why);
     std::replace_if(
         shown.begin(), shown.end(), [](char c) { return c >= 0 && c < ' '; }, '?');
     folder.problem = why.empty() ? "" : "its file \"" + shown + "\" " + why;
@@ -342,7 +329,7 @@ bool findUri(const std::string& name, void* user) {
 bool readUri(std::vector<unsigned char>* out, std::string* problem, const std::string& name, void* user) {
     Folder& folder = *static_cast<Folder*>(user);
     try {
-        std::string why, path = resolved(folder, name.substr(1), why);
+        std::string why, path = pathBelow(folder.path, name.substr(1), why);
         // tinygltf takes a plus for a space, as in a web form.
         std::string plus = path;
         std::replace(plus.begin(), plus.end(), ' ', '+');

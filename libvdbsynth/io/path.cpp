@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 #include <set>
 #include <utility>
 
@@ -31,6 +32,18 @@ std::string folderOf(const std::string& path) {
     const std::size_t slash = path.rfind('/');
     if (slash == std::string::npos) return ".";
     return slash == 0 ? "/" : path.substr(0, slash);
+}
+
+std::string pathBelow(const std::string& folder, const std::string& name, std::string& problem) {
+    namespace fs = std::filesystem;
+    const fs::path relative = fs::path(name).lexically_normal();
+    if (name.find('\0') != std::string::npos)
+        problem = "has a name that no file has";
+    else if (name.find("://") != std::string::npos)
+        problem = "is an address; only files beside or below the one that names it are read";
+    else if (relative.is_absolute() || (!relative.empty() && *relative.begin() == ".."))
+        problem = "is not beside or below the file that names it; only such files are read";
+    return (fs::path(folder) / relative).string();
 }
 
 bool isKnownExtension(const std::string& extension) {

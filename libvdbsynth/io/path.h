@@ -12,6 +12,11 @@ std::string fileNameOf(const std::string& path);
 /// Folder of a path, "." if it names none.
 std::string folderOf(const std::string& path);
 
+/// The file that a name in another file means, beside or below that file's folder.
+/// @param name     a relative path, percent-decoded
+/// @param problem  set to what is wrong with a name that means no such file, as "is an address; ..."
+std::string pathBelow(const std::string& folder, const std::string& name, std::string& problem);
+
 /// True for an extension in lower case of any kind of file that is read, perhaps with .gz.
 bool isKnownExtension(const std::string& extension);
 /// The extension of the kind of file that begins so, for what tells it by its first bytes (or words); empty

@@ -65,7 +65,7 @@ void AnalogyTraining::addRows(const AnalogyPair& pair, std::size_t p, const Volu
                               const RunContext& ctx) {
     const BrickField& plain = mLevels[p].plain.distance[std::size_t(mLevel)];
     const int margin = mShape.coarse ? std::max(mShape.half + 1, 2 * mShape.coarseHalf + 2)
-                                     : mShape.half + 1 + int(options.bent);
+                                     : mShape.half + 1 + int(options.curvatureAdapted);
     const IndexBox box = innerAt(pair, margin);
     mInner.push_back(box);
     const BrickField sources =
@@ -78,8 +78,8 @@ void AnalogyTraining::addRows(const AnalogyPair& pair, std::size_t p, const Volu
         sources, [&](float d) { return d < kOutside && mDepths.open(d); }, ctx);
     mFirst.push_back(std::int32_t(mRows.size()));
     for (std::size_t v = 0; v < table.size(); ++v) mRows.push_back({std::int32_t(p), std::int32_t(v)});
-    mVoxels.push_back(
-        analogyVoxels(std::move(table), *pair.frames, mLevel, options.aligned, options.bent, ctx));
+    mVoxels.push_back(analogyVoxels(std::move(table), *pair.frames, mLevel, options.aligned,
+                                    options.curvatureAdapted, ctx));
 }
 
 void AnalogyTraining::sample(std::size_t r, float* out) const {

@@ -46,7 +46,7 @@ public:
           mLevel(level) {
         mVoxels = analogyVoxels(VoxelTable::where(
                                     mPlain, [&](float d) { return training.depths().open(d); }, ctx),
-                                frames, level, options.aligned, options.bent, ctx);
+                                frames, level, options.aligned, options.curvatureAdapted, ctx);
         begin();
     }
 
@@ -280,7 +280,7 @@ private:
             // Farther than what goes on from a neighbour, the nearest of all is not worth a break.
             const float more = 1 + float(mOptions.coherence) / float(1 << mLevel);
             const float bound = best.row < 0 ? kOutside : best.squared / (more * more);
-            const FeatureMatch nearest = index.nearest(feature.data(), bound, float(mOptions.slack));
+            const FeatureMatch nearest = index.nearest(feature.data(), bound, float(mOptions.epsilon));
             if (nearest.row >= 0) {
                 found.row = nearest.row;
                 found.coherent = 0;
@@ -403,7 +403,7 @@ void validate(const VolumeAnalogyOptions& options) {
     whole(options.components, 4, 256, "components");
     requireOption(options.coherence >= 0 && options.coherence <= 100, "coherence",
                   roundedText(options.coherence, 6), "from 0 to 100");
-    requireOption(options.slack >= 0 && options.slack <= 100, "slack", roundedText(options.slack, 6),
+    requireOption(options.epsilon >= 0 && options.epsilon <= 100, "epsilon", roundedText(options.epsilon, 6),
                   "from 0 to 100");
 }
 

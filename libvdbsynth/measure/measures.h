@@ -26,7 +26,7 @@ struct Statistic {
 /// What is counted once for a whole model.
 struct Topology {
     Components solid, empty;  ///< parts of solid and void; of an object the outside is one of the void's
-    double eulerCharacteristic = 0;  ///< total; density times volume where the texture goes on
+    double eulerCharacteristic = 0;  ///< total; density times volume where the texture continues
     double enclosed = 0;             ///< parts of the void that touch no face
     double tunnels = 0;              ///< first Betti number, of a whole object only
 };
@@ -40,7 +40,8 @@ struct GradientError {
 
 /// Local-patch similarity of occupancies [wu2022, section 5]: patches of 11^3 voxels, every fifth voxel, of
 /// whole objects' boxes padded by 5 void voxels, of textures only inside the box, whose middle 3^3 has both
-/// kinds; of up to 1000 of `other` by lot the share whose best match among all of `reference` is over 0.95.
+/// kinds; of up to 1000 of `other`, sampled at random, the share whose best match among all of `reference` is
+/// over 0.95.
 struct LocalPatches {
     double shareIoU = 0;    ///< LP-IoU
     double shareScore = 0;  ///< LP-F, the F-score in place of the intersection over union

@@ -202,8 +202,8 @@ void describe(const SourceMap& map, openvdb::GridBase& grid) {
     if (map.method != MapMethod::Synthesis) describeTarget(map, grid);
 }
 
-// True if a map by blocks is about a voxel of its result.
-bool says(const SourceMap& map, const Index3& voxel) {
+// True if a map by blocks has sources for a voxel of its result.
+bool covers(const SourceMap& map, const Index3& voxel) {
     if (map.method == MapMethod::Synthesis) return map.targetDomain.contains(voxel);
     const Index3 local = voxel - map.hole.corner;
     return map.targetBox.contains(voxel) && map.hole.distance.box().contains(local) &&
@@ -257,7 +257,7 @@ std::vector<MappedVoxel> mappedVoxels(const SourceMap& map, const openvdb::Float
     std::vector<MappedVoxel> voxels;
     for (auto it = result.cbeginValueOn(); it; ++it) {
         const Index3 voxel = fromCoord(it.getCoord());
-        if (says(map, voxel)) voxels.push_back({voxel, {}});
+        if (covers(map, voxel)) voxels.push_back({voxel, {}});
     }
     parallelFor(ctx, voxels.size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) voxels[i].from = strongestSource(map, voxels[i].to);

@@ -196,8 +196,8 @@ TEST_CASE("makeAnalogy: bent neighbourhoods, same bits for any number of threads
     });
     const Setting s{plain, textured, target, framesAlong(plain, {0, 0, 1}), framesAlong(target, {0, 0, 1})};
     VolumeAnalogyOptions bent = levels(1), straight = levels(1);
-    bent.bent = true;
-    straight.bent = false;
+    bent.curvatureAdapted = true;
+    straight.curvatureAdapted = false;
     RunContext one, three;
     one.threads = 1;
     three.threads = 3;

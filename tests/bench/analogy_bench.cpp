@@ -155,7 +155,7 @@ int main(int argc, char** argv) {
 
     const Search index = timed(kTimed, [&](std::size_t q) {
         return training.index()
-            .nearest(reduced.data() + q * training.reduced().count(), kOutside, float(options.slack))
+            .nearest(reduced.data() + q * training.reduced().count(), kOutside, float(options.epsilon))
             .row;
     });
     flann::Index<flann::L2<float>> trees(flann::Matrix<float>(rows.data(), training.size(), length),

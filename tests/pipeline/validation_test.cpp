@@ -288,7 +288,7 @@ TEST_CASE("AnalogyOptions: every field out of its range is refused", "[pipeline]
     for (int value : {-1, 0, 11}) cases.push_back(with("`sweeps`", &V::sweeps, value, deep));
     for (int value : {0, 3, 257}) cases.push_back(with("`components`", &V::components, value, deep));
     for (double value : {-1.0, 101.0, kNaN}) cases.push_back(with("`coherence`", &V::coherence, value, deep));
-    for (double value : {-1.0, 101.0, kNaN}) cases.push_back(with("`slack`", &V::slack, value, deep));
+    for (double value : {-1.0, 101.0, kNaN}) cases.push_back(with("`epsilon`", &V::epsilon, value, deep));
     DirectionSource source;
     source.kind = DirectionSource::Kind::Grid;
     cases.push_back(with("`direction`", &O::direction, source, call));

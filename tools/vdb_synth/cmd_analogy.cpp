@@ -26,9 +26,9 @@ AnalogyOptions parseOptions(const Arguments& arguments) {
     synthesis.coarseHalf = arguments.whole("coarse-samples") / 2;
     synthesis.components = arguments.whole("components");
     synthesis.coherence = arguments.real("coherence");
-    if (arguments.has("exact")) synthesis.slack = 0;
+    if (arguments.has("exact")) synthesis.epsilon = 0;
     synthesis.causal = arguments.has("causal");
-    synthesis.bent = !arguments.has("straight");
+    synthesis.curvatureAdapted = !arguments.has("straight");
     synthesis.aligned = !arguments.has("naive");
     options.scale = arguments.real("scale");
     options.strength = arguments.real("strength");

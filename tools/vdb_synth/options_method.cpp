@@ -211,14 +211,14 @@ std::vector<Option> analogyTable() {
             .takenBy({"analogy"}),
         flag("exact")
             .says("search the nearest match exactly, among reduced features (slower)")
-            .sets({"slack", "exact"})
+            .sets({"epsilon", "exact"})
             .takenBy({"analogy"}),
         flag("causal")
             .says("compare only what lies behind a voxel in the sweep, as in the paper")
             .takenBy({"analogy"}),
         flag("straight")
             .says("straight cubes as neighbourhoods, as in the paper, instead of curvature-adapted ones")
-            .sets({"bent", "straight"})
+            .sets({"curvatureAdapted", "straight"})
             .takenBy({"analogy"}),
         flag("naive")
             .says("neighbourhoods along the grid's axes, as the paper's first variant, for filters such as "

@@ -8,7 +8,8 @@ set(VDBSYNTH_PUBLIC_HEADERS
   geometry/mesh.h
   geometry/point_cloud.h
   grid/brick_field.h
-  grid/raster_options.h
+  grid/components.h
+  raster/raster_options.h
   io/mesh_file.h
   map/element_sources.h
   map/exemplar_variant.h
@@ -16,22 +17,26 @@ set(VDBSYNTH_PUBLIC_HEADERS
   map/source_map.h
   math/affine.h
   math/index_box.h
+  math/lattice.h
   math/vec3.h
   measure/measures.h
-  pipeline/analogy.h
-  pipeline/compare.h
-  pipeline/fill.h
-  pipeline/make.h
-  pipeline/match.h
-  pipeline/model.h
-  pipeline/repeat.h
-  pipeline/synth.h
+  pipeline/analogy/analogy.h
+  pipeline/compare/compare.h
+  pipeline/fill/fill.h
+  pipeline/make/make.h
+  pipeline/match/match.h
+  pipeline/convert/model.h
+  pipeline/repeat/repeat.h
+  pipeline/synth/synth.h
   procedural/exemplar.h
   search/block_index.h
   synth/synthesis_options.h
   synth/target_size.h
   vdb/level_set.h
-  vdb/mesh_conversion.h
+  vdb/convert/attribute_grids.h
+  vdb/convert/level_set_to_mesh.h
+  vdb/convert/level_set_to_points.h
+  vdb/convert/mesh_to_level_set.h
   vdb/source_map_grids.h
   vdb/vdb_file.h
   vdb/vdb_fwd.h

@@ -6,15 +6,15 @@
 namespace vdbsynth {
 namespace {
 
-constexpr float kDepthWeight = 1;  // of a voxel of depth beside a sample that differs from empty to full
+constexpr float kDepthWeight = 1;  // a voxel of depth weighs as much as a sample's change from empty to full
 
-// Where a column of the cube stands, and along what.
+// A column of the cube: its middle and its direction.
 struct Column {
     Vec3f foot, along;
 };
 
-// The part of a field around columns, copied once, so that a hundred interpolations need not find their
-// bricks.
+// The part of a field around columns, copied once, so that a hundred interpolations
+// need not look up its bricks.
 class Window {
 public:
     Window(const BrickField& field, const std::vector<Column>& columns, float half) {
@@ -27,7 +27,7 @@ public:
             }
         Index3 size;
         for (int axis = 0; axis < 3; ++axis) {
-            // Rounding may take a sample a hair over; a voxel of the far side is never read.
+            // Rounding may move a sample slightly beyond; the extra voxel at the far side is then never read.
             mCorner[axis] = int(std::floor(low[axis] - 1e-3f));
             size[axis] = int(std::floor(high[axis] + 1e-3f)) - mCorner[axis] + 2;
         }
@@ -61,28 +61,29 @@ private:
     float mValue = 0;
     std::vector<float>& mSamples = scratch();
 
-    // A window is made for every voxel of every sweep.
+    // A window is constructed for every voxel of every sweep.
     static std::vector<float>& scratch() {
         thread_local std::vector<float> samples;
         return samples;
     }
 };
 
-Column columnAt(const Vec3f& at, const Frame& frame, const Bend& bend, float t, float b) {
+Column columnAt(const Vec3f& at, const Frame& frame, const Curvature& curvature, float t, float b) {
     const Vec3f flat = at + frame.t * t + frame.b * b;
-    const float overT = bend.tt * t + bend.tb * b, overB = bend.tb * t + bend.bb * b;
+    const float overT = curvature.tt * t + curvature.tb * b, overB = curvature.tb * t + curvature.bb * b;
     if (overT == 0 && overB == 0) return {flat, frame.n};
     const Vec3f along = frame.n + frame.t * overT + frame.b * overB;
     return {flat - frame.n * (0.5f * (overT * t + overB * b)), along * (1 / length(along))};
 }
 
 // Samples of the cube of steps along the frame's axes, up to lastAlong along t; t slowest, n fastest.
-float* sampleCube(const BrickField& field, const Vec3f& at, const Frame& frame, const Bend& bend, int half,
-                  int lastAlong, bool middleToo, float* out) {
+float* sampleCube(const BrickField& field, const Vec3f& at, const Frame& frame, const Curvature& curvature,
+                  int half, int lastAlong, bool middleToo, float* out) {
     thread_local std::vector<Column> columns;
     columns.clear();
     for (int t = -half; t <= lastAlong; ++t)
-        for (int b = -half; b <= half; ++b) columns.push_back(columnAt(at, frame, bend, float(t), float(b)));
+        for (int b = -half; b <= half; ++b)
+            columns.push_back(columnAt(at, frame, curvature, float(t), float(b)));
     const Window window(field, columns, float(half));
     const std::size_t middle = std::size_t(half * (2 * half + 1) + half);
     for (std::size_t c = 0; c < columns.size(); ++c)
@@ -95,17 +96,17 @@ float* sampleCube(const BrickField& field, const Vec3f& at, const Frame& frame, 
 }  // namespace
 
 void sampleMade(const FeatureShape& shape, const BrickField& textured, const Vec3f& at, const Frame& frame,
-                const Bend& bend, float* out) {
-    sampleCube(textured, at, frame, bend, shape.half, shape.causal ? -1 : shape.half, false, out);
+                const Curvature& curvature, float* out) {
+    sampleCube(textured, at, frame, curvature, shape.half, shape.causal ? -1 : shape.half, false, out);
 }
 
 void sampleRest(const FeatureShape& shape, const FeatureFields& fields, const Vec3f& at, const Frame& frame,
-                const Bend& bend, float* out) {
-    out = sampleCube(*fields.plain, at, frame, bend, shape.half, shape.half, true, out);
+                const Curvature& curvature, float* out) {
+    out = sampleCube(*fields.plain, at, frame, curvature, shape.half, shape.half, true, out);
     if (!shape.coarse) return;
     const Vec3f coarse{at.x / 2 - 0.25f, at.y / 2 - 0.25f, at.z / 2 - 0.25f};
-    // Twice as large a step bends twice as much.
-    const Bend wide{2 * bend.tt, 2 * bend.tb, 2 * bend.bb};
+    // A step twice as large doubles the curvature.
+    const Curvature wide{2 * curvature.tt, 2 * curvature.tb, 2 * curvature.bb};
     out = sampleCube(*fields.coarseTextured, coarse, frame, wide, shape.coarseHalf, shape.coarseHalf, true,
                      out);
     sampleCube(*fields.coarsePlain, coarse, frame, wide, shape.coarseHalf, shape.coarseHalf, true, out);
@@ -121,7 +122,7 @@ ReducedFeatures::ReducedFeatures(const FeatureShape& shape, const PrincipalAxes&
         for (std::size_t k = 0; k < mLength; ++k) mAxes[k * mCount + i] = axes.axes[i * mLength + k];
 }
 
-// Axes of one sample lie side by side, so that all coordinates grow at once.
+// Axes of one sample are contiguous, so that all coordinates are summed in parallel.
 void ReducedFeatures::add(std::size_t begin, std::size_t end, const float* samples, float* out) const {
     for (std::size_t k = begin; k < end; ++k) {
         const float value = samples[k - begin] - mMean[k];

@@ -7,10 +7,10 @@
 
 namespace vdbsynth {
 
-/// Sizes of a feature: first samples of what is being made, the textured model, around the voxel: all of the
-/// cube but its middle, or the causal half (t = -half..-1, b and n both ways) [bhat2004, 4.2]; then the rest,
-/// which does not change while a level is made: the cube of the plain model and, unless the level is the
-/// coarsest, the small cubes of both at the next coarser level [4.3].
+/// Sizes of a feature. It begins with samples of the field being synthesized, the textured model, around the
+/// voxel: the cube without its middle, or the causal half (t = -half..-1, b and n both ways) [bhat2004, 4.2].
+/// Then follows the rest, which does not change during a level: the cube of the plain model and, except at
+/// the coarsest level, the small cubes of both at the next coarser level [4.3].
 struct FeatureShape {
     int half = 2, coarseHalf = 1;
     bool causal = false;
@@ -27,31 +27,32 @@ struct FeatureShape {
     std::size_t size() const { return made() + rest(); }
 };
 
-/// Densities a feature is read from; the coarser ones null at the coarsest level.
+/// Densities that a feature is sampled from; the coarser ones null at the coarsest level.
 struct FeatureFields {
     const BrickField* plain = nullptr;
     const BrickField* coarsePlain = nullptr;
     const BrickField* coarseTextured = nullptr;
 };
 
-/// Samples one voxel apart along t, n and b, between voxels trilinearly [bhat2004, 5.3]. With a bend the cube
-/// follows the surface, which the paper left open: column (t, b) stands on p + t T + b B - II(t, b) / 2 N and
-/// runs along N + II'(t, b), the normal there to first order. A bend of 0 is the paper's straight cube.
+/// Samples one voxel apart along t, n and b, trilinear between voxels [bhat2004, 5.3]. With a
+/// curvature the cube follows the surface, which the paper left open: column (t, b) is at p + t T + b
+/// B - II(t, b) / 2 N and runs along N + II'(t, b), the normal there to first order. A curvature of 0
+/// gives the paper's straight cube.
 void sampleMade(const FeatureShape& shape, const BrickField& textured, const Vec3f& at, const Frame& frame,
-                const Bend& bend, float* out);
+                const Curvature& curvature, float* out);
 void sampleRest(const FeatureShape& shape, const FeatureFields& fields, const Vec3f& at, const Frame& frame,
-                const Bend& bend, float* out);
+                const Curvature& curvature, float* out);
 
-/// Features as few numbers: their coordinates along principal axes, to which the samples of what is being
-/// made and the rest are added one after the other, and the voxel's depth: densities are all alike a voxel
-/// away from a surface, and without it nothing would keep what is copied from there at its depth.
+/// Features reduced to few numbers: their coordinates along principal axes, as the sum of the contributions
+/// of the synthesized samples and of the rest, and the voxel's depth. A voxel away from a surface all
+/// densities are equal, so without the depth sources from there would not keep their depth.
 class ReducedFeatures {
 public:
     ReducedFeatures() = default;
     ReducedFeatures(const FeatureShape& shape, const PrincipalAxes& axes);
 
     std::size_t count() const { return mCount + 1; }
-    /// out = what the samples of what is being made add to `rest`   @param out [count]
+    /// out = contribution of the synthesized samples to `rest`   @param out [count]
     void addMade(const float* made, const float* rest, float* out) const;
     /// out = coordinates of the rest alone
     /// @param depth  distance from the plain model's surface [voxels]

@@ -3,6 +3,7 @@
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/grid/field_sampling.h"
 #include "libvdbsynth/grid/pyramid.h"
+#include "libvdbsynth/math/lattice.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +20,7 @@ BrickField mapped(const BrickField& field, const RunContext& ctx, const Of& of) 
     });
 }
 
-// Frames of voxels that have none: the mean of their neighbours', again until all have one.
+// Frames of voxels that have none: the mean of their neighbours', repeated until all have one.
 void fillFrames(AnalogyVoxels& voxels, std::vector<char>& known) {
     std::vector<std::uint32_t> open;
     for (std::uint32_t i = 0; i < known.size(); ++i)
@@ -32,9 +33,8 @@ void fillFrames(AnalogyVoxels& voxels, std::vector<char>& known) {
             Vec3f t, n;
             float sweep = 0;
             int count = 0;
-            for (int k = 0; k < 27; ++k) {
-                const std::int32_t j =
-                    voxels.table.find(voxels.table[i] + Index3{k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1});
+            for (const Index3& step : kAllNeighbours) {
+                const std::int32_t j = voxels.table.find(voxels.table[i] + step);
                 if (j < 0 || !known[std::size_t(j)]) continue;
                 t = t + voxels.frame[std::size_t(j)].t;
                 n = n + voxels.frame[std::size_t(j)].n;
@@ -54,13 +54,13 @@ void fillFrames(AnalogyVoxels& voxels, std::vector<char>& known) {
             voxels.sweep[found[f].first] = sweeps[f];
             known[found[f].first] = 1;
         }
-        if (found.empty()) return;  // a part without any: it keeps the grid's axes
+        if (found.empty()) return;  // a component without any: it keeps the grid's axes
         open.swap(left);
     }
 }
 
-// Of the plain model's parallel surface through a place, in voxels of the level.
-Bend bendAt(const BrickField& distance, const Vec3f& at, const Frame& frame, int level) {
+// Curvature of the plain model's parallel surface through a point, in voxels of the level.
+Curvature curvatureAt(const BrickField& distance, const Vec3f& at, const Frame& frame, int level) {
     const float step = float(1 << level);
     const auto change = [&](const Vec3f& along) {
         const auto normal = [&](const Vec3f& p) {
@@ -69,7 +69,7 @@ Bend bendAt(const BrickField& distance, const Vec3f& at, const Frame& frame, int
         };
         return (normal(at + along * step) - normal(at - along * step)) * 0.5f;
     };
-    const auto most = [](float v) { return std::clamp(v, -kMostBend, kMostBend); };
+    const auto most = [](float v) { return std::clamp(v, -kMostCurvature, kMostCurvature); };
     const Vec3f t = change(frame.t), b = change(frame.b);
     return {most(dot(t, frame.t)), most((dot(t, frame.b) + dot(b, frame.t)) / 2), most(dot(b, frame.b))};
 }
@@ -91,13 +91,13 @@ AnalogyPyramid analogyPyramid(const BrickField& distance, int levels, const RunC
     return pyramid;
 }
 
-AnalogyVoxels analogyVoxels(VoxelTable table, const FrameField& frames, int level, bool aligned, bool bent,
-                            const RunContext& ctx) {
+AnalogyVoxels analogyVoxels(VoxelTable table, const FrameField& frames, int level, bool aligned,
+                            bool curvatureAdapted, const RunContext& ctx) {
     AnalogyVoxels voxels;
     voxels.table = std::move(table);
     voxels.frame.resize(voxels.table.size());
     voxels.sweep.resize(voxels.table.size());
-    voxels.bend.resize(voxels.table.size());
+    voxels.curvature.resize(voxels.table.size());
     std::vector<char> known(voxels.table.size(), 1);
     parallelFor(ctx, voxels.table.size(), 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -110,12 +110,12 @@ AnalogyVoxels analogyVoxels(VoxelTable table, const FrameField& frames, int leve
         }
     });
     if (aligned) fillFrames(voxels, known);
-    if (aligned && bent)
+    if (aligned && curvatureAdapted)
         parallelFor(ctx, voxels.table.size(), 1024, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const Index3& v = voxels.table[i];
                 const Vec3f at = toFinest({float(v.x), float(v.y), float(v.z)}, level);
-                voxels.bend[i] = bendAt(frames.distance(), at, voxels.frame[i], level);
+                voxels.curvature[i] = curvatureAt(frames.distance(), at, voxels.frame[i], level);
             }
         });
     return voxels;

@@ -9,9 +9,10 @@
 
 namespace vdbsynth {
 
-/// How a surface bends away from a frame's plane: second fundamental form of the plain model's surface
-/// through the voxel, along t and b, positive where it falls away as a ball does. [1 / voxels of the level]
-struct Bend {
+/// Curvature of a surface relative to a frame's plane: second fundamental form of the plain
+/// model's surface through the voxel, along t and b, positive for a convex surface such as a
+/// ball's. [1 / voxels of the level]
+struct Curvature {
     float tt = 0, tb = 0, bb = 0;
 };
 
@@ -19,12 +20,12 @@ struct Bend {
 struct AnalogyVoxels {
     VoxelTable table;
     std::vector<Frame> frame;
-    std::vector<Bend> bend;    ///< all 0 unless asked for
-    std::vector<float> sweep;  ///< [voxels of the finest level]
+    std::vector<Curvature> curvature;  ///< all 0 unless requested
+    std::vector<float> sweep;          ///< [voxels of the finest level]
 };
 
-/// A field at every level, finest first: distances in voxels of the level, and the densities
-/// clamp(1/2 - d/2, 0, 1) that features are made of.
+/// A field at every level, finest first: distances in voxels of the level, and the densities clamp(1/2 - d/2,
+/// 0, 1) from which features are built.
 struct AnalogyPyramid {
     std::vector<BrickField> distance, density;
 };
@@ -38,37 +39,39 @@ inline float densityOf(float distance) {
 }
 BrickField densityField(const BrickField& distance, const RunContext& ctx);
 
-/// A level's place in the finest one: the middles of their boxes' first voxels are half a coarse voxel apart.
+/// Converts a level's position to the finest level: the centres of the boxes' first voxels are
+/// half a coarse voxel apart.
 inline Vec3f toFinest(const Vec3f& p, int level) {
     const float scale = float(1 << level), shift = (scale - 1) / 2;
     return {p.x * scale + shift, p.y * scale + shift, p.z * scale + shift};
 }
 
-/// Frames and sweep distances of voxels; those near no surface voxel take their neighbours'.
-/// @param aligned  false: every frame is that of the grid's axes, in the order of slices (the naive variant)
-/// @param bent     true: bends too, by differences of the normals two voxels of the level apart, at most
-///                 kMostBend
+/// Frames and sweep distances of voxels; voxels far from the surface take their neighbours'.
+/// @param aligned  false: every frame is that of the grid's axes, in slice order (the naive variant)
+/// @param curvatureAdapted  true: curvatures too, from differences of the normals two voxels of the level
+/// apart, at most kMostCurvature
 /// @par Repeats same bits for any number of threads
-AnalogyVoxels analogyVoxels(VoxelTable table, const FrameField& frames, int level, bool aligned, bool bent,
-                            const RunContext& ctx);
-inline constexpr float kMostBend = 0.2f;  ///< sharper, columns five voxels apart would cross
+AnalogyVoxels analogyVoxels(VoxelTable table, const FrameField& frames, int level, bool aligned,
+                            bool curvatureAdapted, const RunContext& ctx);
+inline constexpr float kMostCurvature = 0.2f;  ///< beyond it, columns five voxels apart would cross
 
-/// What textured models are at each depth of the plain ones, and so where a target has to be synthesised at
-/// all: where depths within a neighbourhood's radius do not agree. By whole voxels of distance.
+/// The phase of textured models at each depth of the plain ones, and so which voxels of a target must be
+/// synthesised: those at depths whose neighbourhood is not all of one phase. In whole voxels of distance.
 class DepthClasses {
 public:
     enum class Kind : std::uint8_t { Unseen, Full, Empty, Mixed };
 
     explicit DepthClasses(int radius);
-    /// Counts what a textured model is at a depth. Outside of it `textured` is at least 1, inside at most -1.
+    /// Records the phase of a textured model at a depth. Outside it `textured` is at
+    /// least 1, inside at most -1.
     void add(float plain, float textured);
-    /// Works out the classes; depths beyond all that were seen are like the nearest seen.
+    /// Computes the classes; depths beyond all recorded ones take the class of the nearest recorded one.
     void finish();
 
     /// True where voxels at this depth have to be synthesised.
     bool open(float plain) const { return mOpen[index(plain)]; }
     bool full(float plain) const { return mKind[index(plain)] == Kind::Full; }
-    /// The same for a map, where every depth is full or empty: mixed ones are as the plain model is.
+    /// The same for a map, where every depth is full or empty: mixed ones take the plain model's phase.
     std::vector<DepthRun> runs() const;
 
 private:

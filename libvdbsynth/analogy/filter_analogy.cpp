@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/math/least_squares.h"
 #include "libvdbsynth/math/pca.h"
 #include "libvdbsynth/math/trigonometry.h"
@@ -15,15 +16,15 @@
 namespace vdbsynth {
 namespace {
 
-constexpr std::size_t kMostFitted = 60000;    // rows that maps and axes are made from
+constexpr std::size_t kMostFitted = 60000;    // rows used to fit maps and axes
 constexpr std::size_t kMostIndexed = 250000;  // rows that are searched
-constexpr std::size_t kLeast = 1000;          // rows, or there is nothing to learn from
-constexpr std::size_t kAlike = 64;            // one of so many rows that are the same throughout is kept
-constexpr int kHeldBlock = 4;                 // log2 of the side of what is held out
-constexpr double kWorth = 0.98;               // of the affine map's error that a search must stay below
+constexpr std::size_t kLeast = 1000;          // rows needed for training
+constexpr std::size_t kUniform = 64;          // one of so many constant rows is kept
+constexpr int kHeldBlock = 4;                 // log2 of the side of held-out blocks
+constexpr double kWorth = 0.98;  // a search is used if its error is below this share of the affine map's
 constexpr float kAnyDistance = 1e30f;
 
-// Smoothing of a level: a Gaussian of half the distance of its samples, cut at three of its widths.
+// Smoothing of a level: a Gaussian of half the distance of its samples, cut off at three sigma.
 float sigmaOf(int level) {
     return float(1 << (level - 1));
 }
@@ -45,7 +46,7 @@ std::vector<float> gaussian(int level) {
 }
 
 // Sums along the slowest axis of [n + 2 radius, rest] samples; the axis becomes the fastest, so that three
-// calls smooth all three.
+// calls smooth all axes.
 void smoothAxis(std::vector<float>& samples, int from, int to, const std::vector<float>& weights) {
     const std::size_t rest = samples.size() / std::size_t(from);
     std::vector<float> out(std::size_t(to) * rest);
@@ -69,7 +70,7 @@ BrickField smoothed(const BrickField& field, int level, const RunContext& ctx) {
             std::fill(samples, samples + BrickField::kSamples, value);
             return;
         }
-        std::vector<float> wide(std::size_t(side) * std::size_t(side) * std::size_t(side));
+        std::vector<float> wide(latticeCount({side, side, side}));
         field.readBox(corner, {side, side, side}, wide.data());
         for (int axis = 0; axis < 3; ++axis) smoothAxis(wide, side, BrickField::kSide, weights);
         std::copy(wide.begin(), wide.end(), samples);
@@ -89,7 +90,7 @@ public:
         return std::size_t(side * side * side + 27 * (options.levels - 1));
     }
 
-    /// False, with the value, where the whole neighbourhood of a box has one.
+    /// False, with the value, if the whole neighbourhood of a box has one value.
     bool varies(const IndexBox& box, float& value) const {
         const int reach = filterReach(mOptions);
         const Index3 by{reach, reach, reach};
@@ -109,14 +110,13 @@ private:
     static std::size_t readLevel(const BrickField& field, const IndexBox& brick, int half, int step,
                                  float* out, std::size_t at, std::size_t size) {
         const int reach = half * step, side = BrickField::kSide + 2 * reach, count = 2 * half + 1;
-        std::vector<float> wide(std::size_t(side) * std::size_t(side) * std::size_t(side));
+        std::vector<float> wide(latticeCount({side, side, side}));
         field.readBox(brick.min - Index3{reach, reach, reach}, {side, side, side}, wide.data());
         for (int i = 0; i < BrickField::kSamples; ++i) {
             float* to = out + std::size_t(i) * size + at;
             const float* from = wide.data() + ((i >> 6) * side + ((i >> 3) & 7)) * side + (i & 7);
-            for (int x = 0; x < count; ++x)
-                for (int y = 0; y < count; ++y)
-                    for (int z = 0; z < count; ++z) *to++ = from[((x * side + y) * side + z) * step];
+            forEachVoxel(IndexBox::cube({0, 0, 0}, count),
+                         [&](const Index3& p) { *to++ = from[((p.x * side + p.y) * side + p.z) * step]; });
         }
         return at + std::size_t(count * count * count);
     }
@@ -128,10 +128,8 @@ private:
 
 std::vector<IndexBox> bricksOf(const IndexBox& box) {
     std::vector<IndexBox> bricks;
-    for (int x = box.min.x; x <= box.max.x; x += BrickField::kSide)
-        for (int y = box.min.y; y <= box.max.y; y += BrickField::kSide)
-            for (int z = box.min.z; z <= box.max.z; z += BrickField::kSide)
-                bricks.push_back(IndexBox::cube({x, y, z}, BrickField::kSide));
+    const auto add = [&](const Index3& p) { bricks.push_back(IndexBox::cube(p, BrickField::kSide)); };
+    forEachVoxel(box, add, BrickField::kSide);
     return bricks;
 }
 
@@ -141,10 +139,10 @@ struct Rows {
     std::vector<char> held;
     std::size_t seen = 0;
 
-    Rows only(std::size_t length, char which) const {
+    Rows only(std::size_t length, char part) const {
         Rows rows;
         for (std::size_t r = 0; r < after.size(); ++r) {
-            if (held[r] != which) continue;
+            if (held[r] != part) continue;
             const auto at = vectors.begin() + std::ptrdiff_t(r * length);
             rows.vectors.insert(rows.vectors.end(), at, at + std::ptrdiff_t(length));
             rows.before.push_back(before[r]);
@@ -154,7 +152,7 @@ struct Rows {
     }
 };
 
-// Every so many voxels of the bricks that vary, at most `most`.
+// Every n-th voxel of the bricks that vary, at most `most`.
 class Gathering {
 public:
     Gathering(const std::vector<FilterPair>& pairs, const FilterAnalogyOptions& options,
@@ -174,7 +172,7 @@ public:
     Rows rows(std::size_t most) const {
         const std::size_t length = Neighbourhoods::length(mOptions);
         const std::size_t all = mBricks.size() * std::size_t(BrickField::kSamples);
-        // An odd step, so that places within bricks differ.
+        // An odd step, so that positions within bricks differ.
         const std::size_t step = all <= most ? 1 : (all / most + 1) | 1;
         std::vector<Rows> parts(mBricks.size());
         parallelFor(mContext, mBricks.size(), 4, [&](std::size_t first, std::size_t last) {
@@ -208,10 +206,10 @@ private:
             const FilterPair& pair = mPairs[mBricks[b].pair];
             if (!pair.before->box().contains(p)) continue;
             const auto at = vectors.begin() + std::ptrdiff_t(i * length);
-            // Empty and full neighbourhoods are many and all alike; a search among them is a scan.
+            // Empty and full neighbourhoods are many and all equal; a search among them is a linear scan.
             const bool alike =
                 std::all_of(at, at + std::ptrdiff_t(length), [&](float v) { return v == *at; });
-            if (alike && i / step % kAlike != 0) continue;
+            if (alike && i / step % kUniform != 0) continue;
             rows.vectors.insert(rows.vectors.end(), at, at + std::ptrdiff_t(length));
             rows.before.push_back(pair.before->inside(p));
             rows.after.push_back(pair.after->at(p));
@@ -227,7 +225,7 @@ private:
     std::vector<Brick> mBricks;
 };
 
-// What an affine map missed at each row, found by the nearest row.
+// The affine map's residual at each row, found by the nearest row.
 class Rests {
 public:
     Rests(const Rows& rows, std::size_t length, const AffineMap& map, const FilterAnalogyOptions& options,
@@ -268,7 +266,7 @@ double rootMeanSquare(const std::vector<float>& values) {
     return std::sqrt(sum / double(std::max<std::size_t>(values.size(), 1)));
 }
 
-// How well both ways do on what they have not seen.
+// The errors of both methods on held-out rows.
 void holdOut(const Rows& rows, std::size_t length, const FilterAnalogyOptions& options,
              FilterAnalogyStats& stats, const RunContext& ctx) {
     const Rows seen = rows.only(length, 0), held = rows.only(length, 1);
@@ -367,8 +365,8 @@ FilterAnalogyResult makeFilterAnalogy(const std::vector<FilterPair>& pairs, cons
     Rows rows = gathering.rows(kMostFitted);
     if (rows.after.size() < kLeast)
         throw Error(ErrorCode::Unusable, "the pair has " + std::to_string(rows.after.size()) +
-                                             " voxels that are not like all around them; at least " +
-                                             std::to_string(kLeast) + " are needed to learn from");
+                                             " voxels that differ from their neighbours; at least " +
+                                             std::to_string(kLeast) + " are needed for training");
     holdOut(rows, length, options, result.stats, ctx);
     const AffineMap map = fitAffine(rows.vectors, length, rows.after);
     std::optional<Rests> rests;

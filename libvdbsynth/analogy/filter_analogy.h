@@ -8,7 +8,7 @@
 
 namespace vdbsynth {
 
-/// Numbers before and after something was done to them, over one box. Borrowed.
+/// A scalar field before and after a filter, over one box. Borrowed.
 struct FilterPair {
     const BrickField *before = nullptr, *after = nullptr;
 };
@@ -18,21 +18,20 @@ struct FilterAnalogyResult {
     FilterAnalogyStats stats;
 };
 
-/// Learns what was done to numbers from before and after, and does it to others: the naive variant of
-/// [bhat2004, section 4.1], neighbourhoods along the grid's axes, for filters such as a blur that have no
-/// direction.
-/// Beyond the paper, which copies the value of the nearest neighbourhood: the affine map of the neighbourhood
-/// that fits best by least squares, which is exact for linear filters within its reach, plus, where that errs
-/// less on voxels held out (a quarter, in blocks of 16^3), what the map missed at the nearest row.
-/// @param target  anything over any box; outside of boxes values go on as they are at the border
+/// Learns a filter from fields before and after, and applies it to others: the naive variant of [bhat2004,
+/// section 4.1], axis-aligned neighbourhoods, for filters such as a blur that have no direction. Beyond the
+/// paper, which copies the value of the nearest neighbourhood: the affine map of the neighbourhood that fits
+/// best by least squares, which is exact for linear filters within its reach, plus the map's residual at the
+/// nearest row where that lowers the error on held-out voxels (a quarter, in blocks of 16^3).
+/// @param target  any values over any box; outside boxes the border values continue
 /// @throw Error InvalidOption, ShapeMismatch (a pair over two boxes), BadData (NaN), Unusable (fewer than
-/// 1000 voxels to learn from), Cancelled
-/// @par Cost    O(voxels that are not constant * samples), and a search each if the rests are used
+/// 1000 voxels for training), Cancelled
+/// @par Cost    O(voxels that are not constant * samples), and a search for each if the residuals are used
 /// @par Repeats same bits for any number of threads
 FilterAnalogyResult makeFilterAnalogy(const std::vector<FilterPair>& pairs, const BrickField& target,
                                       const FilterAnalogyOptions& options, const RunContext& ctx = {});
 
-/// How far from a voxel its neighbourhood goes, smoothing included. [voxels]
+/// Reach of a neighbourhood around a voxel, smoothing included. [voxels]
 int filterReach(const FilterAnalogyOptions& options);
 
 }  // namespace vdbsynth

@@ -6,6 +6,7 @@
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/base/parallel_sort.h"
 #include "libvdbsynth/grid/pyramid.h"
+#include "libvdbsynth/math/lattice.h"
 
 #include <algorithm>
 #include <array>
@@ -19,7 +20,7 @@ namespace {
 constexpr float kFar = kAnalogyFar;
 constexpr float kWave = 0.5f;  // [voxels of the level] of sweep distance
 
-// What a level leaves to the next finer one.
+// The state that a level passes to the next finer one.
 struct Made {
     BrickField distance, density;
     VoxelTable table;
@@ -29,7 +30,17 @@ struct Made {
     std::vector<Frame> sourceFrame;
 };
 
-// The target at one level.
+// The target at one level: an assignment of a source row to every voxel that has to be synthesised.
+// Between two waves:
+// - mSource[i] is a row of the training, or -1 as long as none was found for voxel i of mVoxels;
+// - mDistance is the field as synthesised so far, full or empty (-kFar, kFar) where nothing has to be, and
+//   mDensity is densityField of it;
+// - mChanged[i] and mComputed[i] are the waves (counted by mNow) in which voxel i last got another source and
+// was
+//   last searched; a later sweep searches only voxels that changed, or have a neighbour that did, since then;
+// - a wave reads only the state before it and writes mFound, which is then applied in order, so results do
+// not
+//   depend on threads.
 class Level {
 public:
     Level(const AnalogyTraining& training, const AnalogyPyramid& target, const FrameField& frames, int level,
@@ -111,8 +122,8 @@ private:
         });
     }
 
-    // Where nothing has to be worked out, full or empty; else the plain target, or what the coarser level
-    // made.
+    // Voxels that need no computation are full or empty; the others start from the plain target, or from the
+    // coarser level's result.
     void begin() {
         const BrickField start =
             mCoarser ? doubled(mCoarser->distance, mPlain.box().size(), mContext) : mPlain;
@@ -131,15 +142,15 @@ private:
         mSource.assign(count, -1);
         mCoherent.assign(count, 0);
         mChanged.assign(count, 0);
-        mWorkedOut.assign(count, 0);
+        mComputed.assign(count, 0);
         if (mCoarser)
             each(1024, [&](std::size_t i) { mSource[i] = inherited(i); });
         else
             layPatches();
     }
 
-    // Nothing grows on a plain surface: it looks like the plainest place of the texture, everywhere. So the
-    // coarsest level begins with patches of the textured model, laid side by side without regard to joints.
+    // Nothing would grow on a plain surface: it resembles the plainest part of the texture everywhere. So the
+    // coarsest level begins with patches of the textured model, placed side by side without regard to seams.
     void layPatches() {
         const PatchLayout layout(mVoxels, mPlain, mTraining, mContext);
         each(1024, [&](std::size_t i) { mSource[i] = layout.rowOf(i); });
@@ -155,7 +166,8 @@ private:
         }
     }
 
-    // What the coarser level's voxel copied, as far from its middle as this one is from the coarser voxel's.
+    // The source of the coarser level's voxel, offset from its middle as this voxel
+    // is from the coarser voxel's.
     std::int32_t inherited(std::size_t i) const {
         const Index3& v = mVoxels.table[i];
         const Index3 parent{v.x >> 1, v.y >> 1, v.z >> 1};
@@ -163,12 +175,12 @@ private:
         if (c < 0 || mCoarser->source[std::size_t(c)].pair < 0) return -1;
         const Vec3f middle = toFinest(middleOf(parent), 1);
         const Vec3f from = toFinest(middleOf(mCoarser->sourceVoxel[std::size_t(c)]), 1) +
-                           turned(mCoarser->frame[std::size_t(c)], mCoarser->sourceFrame[std::size_t(c)],
-                                  middleOf(v) - middle);
+                           rotated(mCoarser->frame[std::size_t(c)], mCoarser->sourceFrame[std::size_t(c)],
+                                   middleOf(v) - middle);
         return mTraining.find(mCoarser->source[std::size_t(c)].pair, nearestVoxel(from));
     }
 
-    // How near what was copied is, beside the nearest there is.
+    // Feature distances of the sources and of the nearest rows.
     void probe(AnalogyLevelStats& stats) const {
         const std::size_t count = std::min(kProbed, mSource.size());
         std::vector<std::pair<float, float>> squared(count);
@@ -192,12 +204,12 @@ private:
     }
 
     void featureOf(std::size_t i, std::vector<float>& made, std::vector<float>& feature) const {
-        sampleMade(mShape, mDensity, middleOf(mVoxels.table[i]), mVoxels.frame[i], mVoxels.bend[i],
+        sampleMade(mShape, mDensity, middleOf(mVoxels.table[i]), mVoxels.frame[i], mVoxels.curvature[i],
                    made.data());
         mTraining.reduced().addMade(made.data(), mRest.data() + i * feature.size(), feature.data());
     }
 
-    // Voxels in the order of waves; where each wave begins, and the end.
+    // Voxels in the order of waves; the beginning of each wave, and the end.
     std::vector<std::size_t> orderWaves() {
         const float thickness = kWave * float(1 << mLevel);
         std::vector<std::pair<int, std::uint32_t>> order(mVoxels.table.size());
@@ -220,7 +232,7 @@ private:
         parallelFor(mContext, mVoxels.table.size(), 256, [&](std::size_t first, std::size_t last) {
             std::vector<float> rest(mShape.rest());
             for (std::size_t i = first; i < last; ++i) {
-                sampleRest(mShape, fields, middleOf(mVoxels.table[i]), mVoxels.frame[i], mVoxels.bend[i],
+                sampleRest(mShape, fields, middleOf(mVoxels.table[i]), mVoxels.frame[i], mVoxels.curvature[i],
                            rest.data());
                 mTraining.reduced().ofRest(rest.data(), mPlain.inside(mVoxels.table[i]),
                                            mRest.data() + i * count);
@@ -240,7 +252,7 @@ private:
         for (std::size_t k = 0; k < mFound.size(); ++k) {
             if (mFound[k].row < 0) continue;
             const std::uint32_t i = mOrder[first + k];
-            mWorkedOut[i] = mNow;
+            mComputed[i] = mNow;
             if (mSource[i] == mFound[k].row && !searched) continue;
             mCoherent[i] = mFound[k].coherent;
             if (mSource[i] != mFound[k].row) mChanged[i] = mNow;
@@ -251,13 +263,13 @@ private:
         }
     }
 
-    // Whether one of a voxel's neighbours has another source than when it was last worked out; if none has,
-    // it would find again what it has.
+    // True if a neighbour's source changed since the voxel was last computed; otherwise the search would find
+    // the same source again.
     bool changedAround(std::uint32_t i) const {
-        for (int k = 0; k < 27; ++k) {
-            const std::int32_t j =
-                mVoxels.table.find(mVoxels.table[i] + Index3{k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1});
-            if (j >= 0 && mChanged[std::size_t(j)] >= mWorkedOut[i]) return true;
+        if (mChanged[i] >= mComputed[i]) return true;
+        for (const Index3& step : kAllNeighbours) {
+            const std::int32_t j = mVoxels.table.find(mVoxels.table[i] + step);
+            if (j >= 0 && mChanged[std::size_t(j)] >= mComputed[i]) return true;
         }
         return false;
     }
@@ -275,9 +287,10 @@ private:
         Found found;
         found.row = best.row;
         found.coherent = 1;
-        // Later sweeps settle what the first one found; only what has no candidate searches again.
+        // Later sweeps refine the first one's result; only voxels without a candidate search again.
         if (searched || best.row < 0) {
-            // Farther than what goes on from a neighbour, the nearest of all is not worth a break.
+            // The nearest row replaces a candidate that continues a neighbour only if
+            // it is nearer by this factor.
             const float more = 1 + float(mOptions.coherence) / float(1 << mLevel);
             const float bound = best.row < 0 ? kOutside : best.squared / (more * more);
             const FeatureMatch nearest = index.nearest(feature.data(), bound, float(mOptions.epsilon));
@@ -290,42 +303,41 @@ private:
         return found;
     }
 
-    // The nearest of those that go on from what the voxel itself and its neighbours copied.
+    // The nearest of the candidates that continue the voxel's own source and its neighbours'.
     FeatureMatch bestCandidate(std::uint32_t i, const float* feature) const {
         std::array<std::int32_t, 28> tried;
         std::size_t count = 0;
         FeatureMatch best{-1, kOutside};
         const Index3& v = mVoxels.table[i];
-        for (int k = 0; k < 27; ++k) {
-            const Index3 offset{k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1};
-            const std::int32_t j = k == 13 ? std::int32_t(i) : mVoxels.table.find(v + offset);
-            if (j < 0 || mSource[std::size_t(j)] < 0) continue;
+        forEachVoxel(IndexBox{v, v}.expanded(1), [&](const Index3& p) {
+            const std::int32_t j = p == v ? std::int32_t(i) : mVoxels.table.find(p);
+            if (j < 0 || mSource[std::size_t(j)] < 0) return;
             std::int32_t row = mSource[std::size_t(j)];
-            if (k != 13) {
+            if (p != v) {
                 const AnalogyRow& source = mTraining.row(row);
                 const Vec3f from =
                     middleOf(mTraining.voxel(source)) -
-                    turned(mVoxels.frame[std::size_t(j)], mTraining.frame(source), middleOf(offset));
+                    rotated(mVoxels.frame[std::size_t(j)], mTraining.frame(source), middleOf(p - v));
                 row = mTraining.find(source.pair, nearestVoxel(from));
-                if (row < 0) continue;
+                if (row < 0) return;
             }
             if (std::find(tried.begin(), tried.begin() + std::ptrdiff_t(count), row) !=
                 tried.begin() + std::ptrdiff_t(count))
-                continue;
+                return;
             tried[count++] = row;
             const float squared = mTraining.index().squaredTo(feature, row);
             if (squared < best.squared || (squared == best.squared && row < best.row)) best = {row, squared};
-        }
+        });
         return best;
     }
 
-    // What a voxel's source says about a place: the textured distance as far from the source, in its frame,
-    // as the place is from the voxel; the source first moved to the voxel's own depth.
+    // The value that a voxel's source proposes for a position: the textured distance, offset from the source
+    // in its frame as the position is from the voxel; the source is first moved to the voxel's own depth.
     float readThrough(std::size_t i, std::int32_t row, const Index3& place) const {
         const AnalogyRow& source = mTraining.row(row);
         return sampleTrilinear(mTraining.textured(source),
-                               atDepth(i, source) + turned(mVoxels.frame[i], mTraining.frame(source),
-                                                           middleOf(place - mVoxels.table[i])));
+                               atDepth(i, source) + rotated(mVoxels.frame[i], mTraining.frame(source),
+                                                            middleOf(place - mVoxels.table[i])));
     }
 
     // A source moved along its normal to the voxel's own depth.
@@ -335,22 +347,22 @@ private:
         return middleOf(mTraining.voxel(source)) + mTraining.frame(source).n * depth;
     }
 
-    // Means of what a voxel and its neighbours say about it.
+    // Means of the proposals of a voxel and its neighbours.
     BrickField voted() {
         std::vector<float> value(mVoxels.table.size());
         each(256, [&](std::size_t i) {
             const Index3& v = mVoxels.table[i];
             float sum = 0, weights = 0;
-            for (int k = 0; k < 27; ++k) {
-                const Index3 offset{k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1};
-                const std::int32_t j = mVoxels.table.find(v + offset);
-                if (j < 0 || mSource[std::size_t(j)] < 0) continue;
+            forEachVoxel(IndexBox{v, v}.expanded(1), [&](const Index3& p) {
+                const std::int32_t j = mVoxels.table.find(p);
+                if (j < 0 || mSource[std::size_t(j)] < 0) return;
+                const Index3 offset = p - v;
                 const int squared = offset.x * offset.x + offset.y * offset.y + offset.z * offset.z;
                 const float weight = 1 / float(1 + squared);
                 sum +=
                     weight * std::clamp(readThrough(std::size_t(j), mSource[std::size_t(j)], v), -kFar, kFar);
                 weights += weight;
-            }
+            });
             value[i] = weights > 0 ? sum / weights : mDistance.inside(v);
         });
         BrickField result = mDistance;
@@ -368,11 +380,11 @@ private:
     const RunContext& mContext;
     int mLevel;
     AnalogyVoxels mVoxels;
-    BrickField mDistance, mDensity;  // of what is being made
+    BrickField mDistance, mDensity;  // of the field being synthesised
     std::vector<std::int32_t> mSource;
     std::vector<char> mCoherent;
-    std::uint32_t mNow = 0;                           // waves so far
-    std::vector<std::uint32_t> mChanged, mWorkedOut;  // the wave in which each voxel last did
+    std::uint32_t mNow = 0;                          // waves so far
+    std::vector<std::uint32_t> mChanged, mComputed;  // the wave in which each voxel last did or was
     std::vector<float> mRest;
     std::vector<std::uint32_t> mOrder;
     std::vector<Found> mFound;

@@ -10,16 +10,16 @@
 // Steps of volume_analogy; for its .cpp files only.
 namespace vdbsynth {
 
-inline constexpr float kOutside = 1e9f;  // marks voxels that are no source
+inline constexpr float kOutside = 1e9f;  // marks voxels that are not a source
 
 inline Vec3f middleOf(const Index3& v) {
     return {float(v.x), float(v.y), float(v.z)};
 }
-/// What is along one frame's axes, along another's.
-inline Vec3f turned(const Frame& from, const Frame& to, const Vec3f& v) {
+/// Converts a vector from one frame to another.
+inline Vec3f rotated(const Frame& from, const Frame& to, const Vec3f& v) {
     return to.t * dot(from.t, v) + to.n * dot(from.n, v) + to.b * dot(from.b, v);
 }
-/// Places are never far below 0, and rounding by a library call is a tenth of a sweep.
+/// Positions are never far below 0, and a library call for rounding would take a tenth of a sweep.
 inline Index3 nearestVoxel(const Vec3f& p) {
     constexpr int kUp = 1024;
     const auto round = [](float v) { return int(v + (float(kUp) + 0.5f)) - kUp; };
@@ -56,7 +56,7 @@ public:
         return mVoxels[std::size_t(r.pair)].table[std::size_t(r.voxel)];
     }
     float plainAt(const AnalogyRow& r) const { return plain(r).inside(voxel(r)); }
-    /// The plain distance at a place of the row's pair.
+    /// The plain distance at a position of the row's pair.
     float plainThrough(const AnalogyRow& r, const Vec3f& at) const { return sampleTrilinear(plain(r), at); }
     const BrickField& textured(const AnalogyRow& r) const {
         return mLevels[std::size_t(r.pair)].textured.distance[std::size_t(mLevel)];
@@ -66,7 +66,7 @@ public:
         const std::int32_t voxel = mVoxels[std::size_t(pair)].table.find(p);
         return voxel < 0 ? -1 : mFirst[std::size_t(pair)] + voxel;
     }
-    /// Half as far as a patch can go on from the middle of a pair. [voxels]
+    /// Half the distance that a patch can extend from the middle of a pair. [voxels]
     int patchReach(std::int32_t pair) const;
 
 private:
@@ -93,10 +93,10 @@ private:
     std::optional<FeatureIndex> mIndex;
 };
 
-/// Patches of the pairs over a target's surface: each begins at a place drawn at random with a source drawn
-/// at random, and goes on from neighbour to neighbour, in both surfaces' frames, until it is as large as the
-/// pair allows or meets another. What lies above and below takes the source of the surface's voxel beneath
-/// it, at its own depth.
+/// Patches of the pairs over a target's surface: each begins at a random position with a random source
+/// and extends from neighbour to neighbour, in both surfaces' frames, until it is as large as the pair
+/// allows or meets another patch. Voxels above and below take the source of the surface's voxel
+/// beneath them, at their own depth.
 /// @par Repeats by ctx.seed
 class PatchLayout {
 public:
@@ -104,7 +104,7 @@ public:
     PatchLayout(const AnalogyVoxels& voxels, const BrickField& plain, const AnalogyTraining& training,
                 const RunContext& ctx);
 
-    /// The row that voxel i begins with, negative where no patch says anything.
+    /// The initial row of voxel i, negative if no patch covers it.
     std::int32_t rowOf(std::size_t i) const;
 
 private:

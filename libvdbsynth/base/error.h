@@ -7,18 +7,18 @@ namespace vdbsynth {
 /// Why an operation failed. The command line maps every code to one exit code (see `exitCode`).
 enum class ErrorCode {
     InvalidOption,  ///< an option is unknown, missing or out of its range
-    ShapeMismatch,  ///< two inputs whose sizes, voxel sizes or domains do not fit together
+    ShapeMismatch,  ///< two inputs whose sizes, voxel sizes or domains do not match
     EmptyInput,     ///< a readable input with nothing in it (no faces, no active voxels)
-    Unusable,       ///< a readable input that this operation cannot work on
+    Unusable,       ///< a readable input that this operation cannot use
     Io,             ///< a file that is missing, a directory, not readable or not writable
-    BadData,        ///< a file that is truncated, corrupt, holds NaN or a kind of grid nobody can use
+    BadData,        ///< a file that is truncated, corrupt, holds NaN or an unsupported kind of grid
     Memory,         ///< more memory than allowed or present
-    Solver,         ///< a numerical method did not reach its goal
+    Solver,         ///< a numerical method did not converge
     Cancelled       ///< the caller asked for a stop; nothing was returned or written
 };
 
-/// The one exception type of the library. The message is one line that names the file, the input or
-/// the options' field (in backquotes), says what is wrong and what would be right.
+/// The one exception type of the library. The message is one line that names the file, the input or the
+/// options' field (in backquotes), the problem and what is valid.
 class Error : public std::runtime_error {
 public:
     Error(ErrorCode code, const std::string& message) : std::runtime_error(message), mCode(code) {}
@@ -33,7 +33,7 @@ private:
 int exitCode(ErrorCode code) noexcept;
 
 /// Throws Error InvalidOption "`FIELD` VALUE: must be RANGE" unless `valid`. Messages name fields of option
-/// structs in backquotes, so that a program can put its own names for them there, as the command line does.
+/// structs in backquotes, so that a program can substitute its own names, as the command line does.
 /// @param field  name of the options' field, for example longestRun
 /// @param value  the refused value as text
 /// @param range  the allowed range in words, for example "a whole number from 4 to 256"

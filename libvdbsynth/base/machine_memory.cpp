@@ -14,10 +14,10 @@ namespace {
 
 constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
 
-// The process's group in one hierarchy, and where that is mounted.
+// The process's group in one hierarchy, and the mount point of that hierarchy.
 struct Hierarchy {
     std::string group;            // from the hierarchy's root, "/" for that itself
-    std::string mount, mounted;   // the folder, and which group lies there
+    std::string mount, mounted;   // the folder, and the group mounted there
     const char* limit = nullptr;  // the file with a group's limit
 };
 
@@ -74,8 +74,8 @@ std::uint64_t limitIn(const std::string& path) {
                                                                             : kUnlimited;
 }
 
-// From the group up to the one that is mounted; a group that lies elsewhere (a container that sees the names
-// of its host) counts as the mounted one.
+// From the group up to the mounted one; a group outside of it (a container that sees its host's names) counts
+// as the mounted one.
 std::uint64_t smallestLimit(const std::string& root, const Hierarchy& hierarchy) {
     std::string below = hierarchy.group + '/';
     const std::string mounted = hierarchy.mounted.size() > 1 ? hierarchy.mounted + '/' : "/";

@@ -9,13 +9,13 @@
 namespace vdbsynth {
 namespace {
 
-/// from_chars takes no plus; "+-1" is still no number.
+/// from_chars accepts no plus; "+-1" stays invalid.
 std::string_view withoutPlus(std::string_view word) {
     if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
     return word;
 }
 
-/// Power of ten of the first digit that counts, of a word that from_chars took for a number: tells a number
+/// Power of ten of the first significant digit of a word that from_chars accepted: distinguishes a number
 /// that is too small from one that is too large, which from_chars does not.
 long long magnitude(std::string_view word) {
     const std::size_t mark = std::min(word.find_first_of("eE"), word.size());
@@ -25,7 +25,7 @@ long long magnitude(std::string_view word) {
     long long exponent = 0;
     if (mark < word.size()) {
         const std::string_view power = withoutPlus(word.substr(mark + 1));
-        // One that is no long long is still further than digits in memory can balance.
+        // An exponent beyond long long exceeds what any digits in memory could balance.
         constexpr long long kFar = 1LL << 60;
         if (!parseWhole(power, exponent)) exponent = power[0] == '-' ? -kFar : kFar;
         exponent = std::clamp(exponent, -kFar, kFar);

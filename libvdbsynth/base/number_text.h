@@ -4,13 +4,13 @@
 
 namespace vdbsynth {
 
-/// Numbers as text, for files, metadata and messages: the one way to read and write them. Nothing here looks
-/// at the locale of the host program (a decimal comma, a thousands separator), and nothing allocates but the
-/// result.
+/// Numbers as text, for files, metadata and messages: the only functions that read and write them.
+/// They ignore the locale of the host program (a decimal comma, a thousands separator) and
+/// allocate nothing but the result.
 
 /// Reads the whole of `word` as a number: digits, an optional sign (+ too), point and exponent, no white
 /// space. A number too small for the type is 0.
-/// @return false where it is not one, or not finite ("nan", "inf", 1e999); `value` then stays as it was
+/// @return false if it is not one, or not finite ("nan", "inf", 1e999); `value` then does not change
 bool parseReal(std::string_view word, double& value);
 bool parseReal(std::string_view word, float& value);
 
@@ -20,7 +20,7 @@ bool parseAnyReal(std::string_view word, double& value);
 bool parseAnyReal(std::string_view word, float& value);
 
 /// Reads the whole of `word` as a whole number in base 10, with an optional sign.
-/// @return false where it is not one or does not fit the type; `value` then stays as it was
+/// @return false if it is not one or does not fit the type; `value` then does not change
 bool parseWhole(std::string_view word, int& value);
 bool parseWhole(std::string_view word, long& value);
 bool parseWhole(std::string_view word, long long& value);
@@ -29,10 +29,10 @@ bool parseWhole(std::string_view word, long long& value);
 std::string exactText(double value);
 std::string exactText(float value);
 
-/// With `digits` significant digits (1 to 17), zeros at the end left out, as printf's %.*g: for people.
+/// With `digits` significant digits (1 to 17), without zeros at the end, like printf's %.*g: for people.
 std::string roundedText(double value, int digits);
 
-/// With `digits` (0 to 17) digits after the point, as printf's %.*f: for tables and measures.
+/// With `digits` (0 to 17) digits after the point, like printf's %.*f: for tables and measures.
 std::string fixedText(double value, int digits);
 
 }  // namespace vdbsynth

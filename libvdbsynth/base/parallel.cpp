@@ -14,8 +14,8 @@
 namespace vdbsynth {
 namespace {
 
-// Debian's TBB is not built for the thread sanitizer, which then cannot see that tasks begin after what came
-// before them and end before what comes after. This says so in words that it knows.
+// Debian's TBB is built without the thread sanitizer, which then cannot see that tasks begin after the
+// preceding code and end before the following. This tells it so.
 class HandOver {
 public:
 #if defined(__SANITIZE_THREAD__)
@@ -52,7 +52,7 @@ void parallelFor(const RunContext& ctx, std::size_t count, std::size_t grain,
     }
     HandOver handOver;
     handOver.give();
-    // Chunks of a caller's group that is cancelled would be left out without a word.
+    // Chunks would be skipped silently if the caller's group is cancelled.
     tbb::task_group_context apart(tbb::task_group_context::isolated);
     const auto runRange = [&](const tbb::blocked_range<std::size_t>& range) {
         handOver.take();
@@ -74,7 +74,7 @@ void runWithThreads(const RunContext& ctx, const std::function<void()>& work) {
         tbb::this_task_arena::isolate(work);
         return;
     }
-    // One place is kept for the calling thread, so that it never has to hand the work to another.
+    // One slot is kept for the calling thread, so that it never has to hand the work to another.
     tbb::task_arena arena(ctx.threads, /* reserved_for_masters= */ 1);
     arena.execute(work);
 }

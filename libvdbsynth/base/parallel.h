@@ -9,19 +9,19 @@
 
 namespace vdbsynth {
 
-/// Runs body(begin, end) over [0, count) in chunks of `grain` elements, on all of the context's
-/// threads. The chunks do not depend on the number of threads, so a body that writes only to the
-/// slots of its own elements gives the same bits for any number of them.
-/// @param grain  elements in a chunk, at least 1
+/// Runs body(begin, end) over [0, count) in chunks of `grain` elements, on all of the context's threads. The
+/// chunks do not depend on the number of threads, so a body that writes only to its own elements gives the
+/// same bits for any number of them.
+/// @param grain  elements per chunk, at least 1
 /// @throw Error Cancelled (polled once per chunk), and whatever the body throws
 /// @par Repeats  yes, for bodies as described
 void parallelFor(const RunContext& ctx, std::size_t count, std::size_t grain,
                  const std::function<void(std::size_t begin, std::size_t end)>& body);
 
-/// Runs `work` on the calling thread and its parallel loops, OpenVDB's among them, on at most ctx.threads
-/// threads. Other loops of the process keep theirs. With 0, or where the caller's own TBB arena has no more
-/// threads than that, they run on the threads of that arena, so nested calls cost nothing. A thread that
-/// waits for these loops takes up no other work of the caller's meanwhile.
+/// Runs `work` on the calling thread and its parallel loops, OpenVDB's included, on at most ctx.threads
+/// threads. Other loops of the process keep theirs. With 0, or if the caller's TBB arena has no more threads
+/// than that, they run on the threads of that arena, so nested calls cost nothing. A thread that waits for
+/// these loops takes no other work of the caller's meanwhile.
 /// @throw whatever `work` throws
 void runWithThreads(const RunContext& ctx, const std::function<void()>& work);
 

@@ -11,7 +11,7 @@ class Random {
 public:
     /// @param seed     the run's seed
     /// @param element  the element (voxel, block, ball ...) that draws
-    /// @param purpose  keeps the draws of two algorithms on one element apart
+    /// @param purpose  separates the draws of two algorithms for one element
     Random(std::uint64_t seed, std::uint64_t element, std::uint32_t purpose = 0) noexcept;
 
     /// Next 32 random bits.
@@ -22,7 +22,7 @@ public:
     double uniform(double low, double high) noexcept;
     /// Uniform in 0 .. count-1; `count` at least 1. Unbiased to 2^-32.
     std::uint32_t below(std::uint32_t count) noexcept;
-    /// Mean 0, variance 1, near normal: the sum of twelve uniforms less six. Needs no logarithm, whose
+    /// Mean 0, variance 1, nearly normal: the sum of twelve uniforms minus six. Needs no logarithm, whose
     /// last bit may differ between processors.
     double normal() noexcept;
 

@@ -9,14 +9,14 @@ namespace {
 
 using Columns = std::vector<AttributeColumn>;
 
-// Index of the column of that name, the number of columns if there is none.
+// Index of the column of that name, or the number of columns if there is none.
 std::size_t indexOf(const Columns& columns, const std::string& name) {
     const auto at = std::find_if(columns.begin(), columns.end(),
                                  [&](const AttributeColumn& c) { return c.name == name; });
     return std::size_t(at - columns.begin());
 }
 
-// Takes the named columns out as one attribute, if all are there.
+// Moves the named columns into one attribute, if all exist.
 bool take(Columns& columns, std::initializer_list<std::string> names, const std::string& as,
           Attributes& attributes, double& white) {
     std::vector<std::size_t> indices;

@@ -7,7 +7,7 @@
 namespace vdbsynth {
 namespace {
 
-constexpr double kCosine = 0.94;  // of the angle from which two normals are of two faces
+constexpr double kCosine = 0.94;  // of the angle beyond which two normals belong to two faces
 constexpr std::uint32_t kNone = 0xffffffffu;
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
@@ -32,7 +32,7 @@ public:
     }
 
 private:
-    // A vertex where the planes of some meet, kNone if they do so in no crease or too far away.
+    // A vertex where some planes meet, kNone if they meet in no crease or too far away.
     std::uint32_t meeting(const Quadric& planes, const Vec3d& start, int rank) {
         const Quadric::Minimum best = planes.minimum(start, 0.003, rank == 3 ? 0.02 : 1);
         if (best.rank < rank || length(best.point - start) > mReach) return kNone;
@@ -98,7 +98,7 @@ private:
             for (std::size_t k = 0; k < 3; ++k) add(t[k], split[k], split[(k + 2) % 3]);
             return add(split[0], split[1], split[2]);
         }
-        // Turned so that the first edge is the split one of one, or the unsplit one of two.
+        // Rotated so that the first edge is the only split one, or the only unsplit one.
         std::size_t k = 0;
         while ((split[k] != kNone) != (splits == 1)) ++k;
         const std::uint32_t a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];

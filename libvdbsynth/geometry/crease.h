@@ -7,14 +7,14 @@
 
 namespace vdbsynth {
 
-/// What is known of the surface at a vertex.
+/// The surface at a vertex.
 struct VertexSurface {
     Quadric planes;  ///< of the surface around it
-    Vec3d normal;    ///< of the plane it lies in; any where rank is not 1
+    Vec3d normal;    ///< of the plane it lies in; arbitrary if rank is not 1
     int rank = 1;    ///< 1: in a face, 2: on a crease, 3: in a corner
 };
 
-/// Puts back creases that a mesh cuts off [attene2003, section 3]: an edge between two vertices that lie in
+/// Restores creases that a mesh cuts off [attene2003, section 3]: an edge between two vertices that lie in
 /// faces whose normals differ by more than 20 degrees crosses a crease without a vertex on it. It is split
 /// where the planes of its ends meet; a triangle whose three edges cross creases, or whose corners lie on
 /// three, gets a vertex in the corner between them. Edges are split for both their faces, so a closed

@@ -7,7 +7,7 @@ namespace {
 
 struct Edge {
     std::uint32_t low, high;
-    bool forward;  // runs from low to high in its face
+    bool forward;  // its face traverses it from low to high
 };
 
 std::vector<Edge> sortedEdges(const Mesh& mesh) {

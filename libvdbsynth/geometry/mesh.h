@@ -22,13 +22,13 @@ struct Mesh {
     std::size_t faceCount() const { return triangles.size() + quads.size(); }
 };
 
-/// What a mesh is, as `info` prints it and as the doors check it.
+/// Summary of a mesh, for `info` and for input checks.
 struct MeshSummary {
     std::size_t vertices = 0;
     std::size_t faces = 0;
     std::size_t openEdges = 0;         ///< edges of exactly one face
     std::size_t nonManifoldEdges = 0;  ///< edges of more than two faces
-    std::size_t misorientedEdges = 0;  ///< edges that both their faces run through in one direction
+    std::size_t misorientedEdges = 0;  ///< edges that both their faces traverse in the same direction
     double signedVolume = 0;           ///< [world^3] by the divergence theorem about the box's centre
     double area = 0;                   ///< [world^2]
     Vec3d boxMin, boxMax;              ///< [world] of the points that faces use
@@ -50,45 +50,44 @@ std::vector<Triangle> triangulated(const Mesh& mesh);
 /// @par Repeats yes
 MeshSummary summarize(const Mesh& mesh);
 
-/// What the edges of a mesh say of it.
+/// Classification of a mesh by its edges.
 enum class EdgeBalance {
-    Open,      ///< some edge is run more often in one direction than in the other
-    Balanced,  ///< none is, but some edge has more than two faces: sheets touch, or faces are given twice
-    Manifold   ///< every edge has two faces that run it in opposite directions
+    Open,      ///< some edge is traversed more often in one direction than in the other
+    Balanced,  ///< none is, but some edge has more than two faces: sheets touch, or faces are duplicated
+    Manifold   ///< every edge has two faces that traverse it in opposite directions
 };
 
 /// Faster than summarize. @par Cost    O(faces)
 EdgeBalance edgeBalance(const Mesh& mesh);
 
-/// True if the mesh bounds something everywhere, though its sheets may touch or cross.
+/// True if the mesh encloses a volume everywhere, though its sheets may touch or cross.
 inline bool isBalanced(const Mesh& mesh) {
     return edgeBalance(mesh) != EdgeBalance::Open;
 }
 
-/// Makes vertices with the same coordinates one, in the faces; points stay. @return number of vertices welded
+/// Merges vertices with equal coordinates, in the faces; points stay. @return number of vertices welded
 /// @par Cost    O(vertices log vertices)   @par Repeats yes
 std::size_t weldVertices(Mesh& mesh);
 
-/// Leaves one of several faces on the same corners, whatever their orientation: double-sided faces become
-/// single, faces given twice count once. Quads become triangles; faces that use a corner twice go.
-/// @return number of faces left out, the ones without area not counted
+/// Keeps one of several faces with the same corners, whatever their orientation: double-sided faces become
+/// single, duplicate faces count once. Quads become triangles; faces that use a corner twice are removed.
+/// @return number of faces removed, without those of zero area
 /// @par Cost    O(faces log faces)   @par Repeats yes
 std::size_t removeDuplicateFaces(Mesh& mesh);
 
-/// Turns faces so that those that share an edge run the same way and the mesh as a whole looks outward. Each
-/// part that hangs together by edges of two faces keeps the side that most of its area had; where there is no
-/// clear majority, the side with positive volume. Quads become triangles.
-/// @return number of faces turned
+/// Flips faces so that neighbours are oriented consistently and the mesh as a whole faces outward. Each part
+/// connected by edges of two faces keeps the orientation that most of its area had; without a clear majority
+/// it gets the one with positive volume. Quads become triangles.
+/// @return number of faces flipped
 /// @par Cost    O(faces log faces)   @par Repeats yes
 std::size_t orientFaces(Mesh& mesh);
 
-/// Splits vertices so that no edge has more than two faces and the faces around a vertex form one fan.
-/// At an edge of 2k faces each face is paired with the neighbour that lies across the solid, so sheets
-/// that touch come apart instead of crossing; vertices that were split, or that lie on the very same place as
-/// another, move `gap` into their own sheet, so that formats without indices (stl) do not weld them again.
-/// Positions change nowhere else.
+/// Splits vertices so that no edge has more than two faces and the faces around a vertex form one fan. At an
+/// edge of 2k faces each face is paired with its neighbour across the solid, so sheets that touch are
+/// separated instead of crossing. Vertices that were split, or that coincide with another, move by `gap` into
+/// their own sheet, so that formats without indices (stl) do not weld them again. No other position changes.
 /// @param mesh  closed (every edge has an even number of faces, half in each direction)
-/// @param gap   [world], the move of a split vertex, at least 0
+/// @param gap   [world], displacement of a split vertex, at least 0
 /// @return number of vertices added
 /// @par Cost    O(faces log faces)   @par Repeats yes
 std::size_t separateNonManifold(Mesh& mesh, float gap);

@@ -12,7 +12,7 @@ void requireMesh(const Mesh& mesh, const std::string& what) {
         for (std::size_t f = 0; f < faces.size(); ++f)
             for (std::uint32_t corner : faces[f])
                 if (corner >= mesh.points.size())
-                    throw Error(ErrorCode::BadData, what + ": face " + std::to_string(f) + " names point " +
+                    throw Error(ErrorCode::BadData, what + ": face " + std::to_string(f) + " uses point " +
                                                         std::to_string(corner) + " of " +
                                                         std::to_string(mesh.points.size()));
     };
@@ -25,7 +25,7 @@ void requireMesh(const Mesh& mesh, const std::string& what) {
     for (const Attribute& attribute : mesh.attributes)
         if (attribute.values.size() != mesh.points.size() * attribute.width)
             throw Error(ErrorCode::BadData,
-                        what + ": attribute \"" + attribute.name + "\" has not one row a point");
+                        what + ": attribute \"" + attribute.name + "\" does not have one row per point");
 }
 
 }  // namespace vdbsynth

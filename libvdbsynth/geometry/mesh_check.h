@@ -5,8 +5,8 @@
 
 namespace vdbsynth {
 
-/// What every function demands of a mesh that a program made: at least one face, corners that are among the
-/// points, finite points, and attributes of one row a point.
+/// What every function requires of a mesh made by a program: at least one face, corners that refer to points,
+/// finite points, and attributes with one row per point.
 /// @param what  begins the message
 /// @throw Error EmptyInput (no faces), BadData
 void requireMesh(const Mesh& mesh, const std::string& what);

@@ -28,10 +28,10 @@ std::vector<FaceEdge> edgesOf(const std::vector<Triangle>& triangles) {
     return edges;
 }
 
-// Two faces at an edge that no third one shares.
+// Two faces at an edge without a third one.
 struct Neighbour {
     std::uint32_t face;
-    bool agrees;  // runs the edge the other way, as a consistent surface does
+    bool agrees;  // traverses the edge in the other direction, as on a consistent surface
 };
 
 std::vector<std::vector<Neighbour>> neighboursOf(const std::vector<Triangle>& triangles) {
@@ -55,7 +55,7 @@ double areaOf(const Mesh& mesh, const Triangle& t) {
     return length(cross(cast<double>(mesh.points[t[1]]) - a, cast<double>(mesh.points[t[2]]) - a)) / 2;
 }
 
-// Volume about the part's own middle: of an open shell, positive where its faces look outward.
+// Volume about the part's own middle: for an open shell, positive if its faces look outward.
 double volumeOf(const Mesh& mesh, const std::vector<Triangle>& triangles,
                 const std::vector<std::uint32_t>& part, const std::vector<char>& flipped) {
     Vec3d middle;
@@ -78,7 +78,7 @@ double volumeOf(const Mesh& mesh, const std::vector<Triangle>& triangles,
     return volume;
 }
 
-// The faces that hang together with `seed`, oriented as it is.
+// The faces connected with `seed`, oriented consistently with it.
 std::vector<std::uint32_t> growPart(const std::vector<std::vector<Neighbour>>& neighbours, std::uint32_t seed,
                                     std::vector<char>& seen, std::vector<char>& flipped) {
     std::vector<std::uint32_t> part{seed};
@@ -96,7 +96,7 @@ std::vector<std::uint32_t> growPart(const std::vector<std::vector<Neighbour>>& n
 }  // namespace
 
 EdgeBalance edgeBalance(const Mesh& mesh) {
-    // Each edge, as (low, high), once for every face: how often forward less how often backward.
+    // Each edge, as (low, high), once per face: number of forward minus backward traversals.
     std::vector<std::uint32_t> begin(mesh.points.size() + 1, 0);
     const auto forEdges = [&mesh](auto&& visit) {
         for (const Triangle& t : mesh.triangles)
@@ -193,18 +193,18 @@ std::size_t orientFaces(Mesh& mesh) {
     for (std::uint32_t seed = 0; seed < mesh.triangles.size(); ++seed) {
         if (seen[seed]) continue;
         const std::vector<std::uint32_t> part = growPart(neighbours, seed, seen, flipped);
-        double turned = 0, area = 0;
+        double flippedArea = 0, area = 0;
         for (std::uint32_t face : part) {
             const double size = areaOf(mesh, mesh.triangles[face]);
             area += size;
-            turned += flipped[face] ? size : 0;
+            flippedArea += flipped[face] ? size : 0;
         }
-        // A part that was consistent keeps its side, which may be that of a cavity. Of a mixed one the clear
-        // majority was right, and where there is none the side that looks outward.
-        const bool turn = turned > 0.4 * area && turned < 0.6 * area
-                              ? volumeOf(mesh, mesh.triangles, part, flipped) < 0
-                              : turned > 0.5 * area;
-        if (turn)
+        // A consistent part keeps its orientation, which may be that of a cavity. In a mixed one the clear
+        // majority was right; without one it is oriented outward.
+        const bool flipPart = flippedArea > 0.4 * area && flippedArea < 0.6 * area
+                                  ? volumeOf(mesh, mesh.triangles, part, flipped) < 0
+                                  : flippedArea > 0.5 * area;
+        if (flipPart)
             for (std::uint32_t face : part) flipped[face] = char(!flipped[face]);
         total += volumeOf(mesh, mesh.triangles, part, flipped);
     }

@@ -1,5 +1,5 @@
-// Makes a closed mesh manifold by pairing the faces around each crowded edge and giving every fan of
-// paired faces a vertex of its own (the "cutting" of non-manifold surfaces).
+// Makes a closed mesh manifold by pairing the faces around each non-manifold edge and giving every fan of
+// paired faces its own vertex (the "cutting" of non-manifold surfaces).
 #include "libvdbsynth/geometry/mesh.h"
 #include "libvdbsynth/math/disjoint_sets.h"
 #include "libvdbsynth/math/trigonometry.h"
@@ -76,8 +76,8 @@ void joinAcross(DisjointSets& sets, const Faces& faces, const Side& a, const Sid
             if (faces.vertex[ca] == faces.vertex[cb]) sets.join(ca, cb);
 }
 
-// With outward normals a face that runs forward (low to high) has the solid on its clockwise side
-// about the edge, so it pairs with the next backward face going down in angle.
+// With outward normals a face that runs forward (low to high) has the solid on its clockwise side about the
+// edge, so it pairs with the next backward face in order of descending angle.
 void pairAround(DisjointSets& sets, const Mesh& mesh, const Faces& faces, const std::vector<Side>& sides,
                 std::size_t begin, std::size_t end) {
     std::vector<std::pair<double, std::size_t>> ring;
@@ -97,7 +97,7 @@ void pairAround(DisjointSets& sets, const Mesh& mesh, const Faces& faces, const 
     }
 }
 
-// Marks vertices that lie on the very same place as another: the two sides of a wall thinner than a cell.
+// Marks vertices that coincide with another: the two sides of a wall thinner than a cell.
 void markCoincident(const std::vector<Vec3f>& points, std::vector<char>& marks) {
     std::vector<std::uint32_t> order(points.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -142,8 +142,8 @@ std::size_t separateNonManifold(Mesh& mesh, float gap) {
     for (std::size_t v = before; v < mesh.points.size(); ++v) split.push_back(1);
     markCoincident(mesh.points, split);
     if (std::find(split.begin(), split.end(), 1) == split.end()) return 0;
-    // A split vertex moves a little towards the middle of its own fan and behind its face: two sheets on the
-    // same place part by the second where the first is the same for both.
+    // A split vertex moves slightly towards the middle of its own fan and behind its face: two coincident
+    // sheets are separated by the second where the first is equal for both.
     std::vector<Vec3d> towards(mesh.points.size());
     const std::vector<Vec3f> points = mesh.points;
     for (std::uint32_t face = 0; face + 1 < faces.first.size(); ++face) {

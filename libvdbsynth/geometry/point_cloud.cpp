@@ -14,7 +14,7 @@
 namespace vdbsynth {
 namespace {
 
-constexpr std::size_t kPlane = 16;  // neighbours that make a plane
+constexpr std::size_t kPlane = 16;  // neighbours that define a plane
 
 // Keeps the points where `keep` is set.
 void keepOnly(PointCloud& cloud, const std::vector<char>& keep) {
@@ -46,7 +46,7 @@ void dropRepeats(PointCloud& cloud) {
     keepOnly(cloud, keep);
 }
 
-// Of each point its kPlane nearest, itself included; short rows end with the point itself.
+// The kPlane nearest points of each, itself included; short rows end with the point itself.
 std::vector<std::uint32_t> neighbourTable(const PointCloud& cloud, const RunContext& ctx) {
     const PointNeighbours tree(cloud.points);
     std::vector<std::uint32_t> table(cloud.points.size() * kPlane);
@@ -78,7 +78,7 @@ Vec3f planeNormal(const PointCloud& cloud, const std::uint32_t* row) {
                                                                                   : Vec3f{0, 0, 1};
 }
 
-// The neighbour graph in both directions, as one array with the beginning of each point's part.
+// The neighbour graph in both directions, as one array with the start of each point's range.
 struct Graph {
     std::vector<std::size_t> begin;
     std::vector<std::uint32_t> other;
@@ -105,7 +105,7 @@ Graph graphOf(const std::vector<std::uint32_t>& table, std::size_t points) {
 }
 
 void orientNormals(PointCloud& cloud, const Graph& graph, const RunContext& ctx) {
-    using Step = std::tuple<float, std::uint32_t, std::uint32_t>;  // bend, point, from
+    using Step = std::tuple<float, std::uint32_t, std::uint32_t>;  // angle, point, from
     std::vector<std::uint32_t> order(cloud.points.size());
     std::iota(order.begin(), order.end(), 0u);
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -119,7 +119,7 @@ void orientNormals(PointCloud& cloud, const Graph& graph, const RunContext& ctx)
         std::priority_queue<Step, std::vector<Step>, std::greater<Step>> queue;
         queue.emplace(0.f, seed, seed);
         while (!queue.empty()) {
-            const auto [bend, point, from] = queue.top();
+            const auto [angle, point, from] = queue.top();
             queue.pop();
             if (done[point]) continue;
             done[point] = 1;

@@ -15,18 +15,18 @@ struct PointCloud {
     Attributes attributes;       ///< of the points
 };
 
-/// Distance [world] from every point to its neighbours: the root mean square over the 6 nearest, over root 2,
-/// which on an even surface is about the distance of two points.
+/// Spacing [world] of every point: the root mean square distance to its 6 nearest, over root 2, which on an
+/// even surface is about the distance between neighbours.
 /// @par Cost    O(points log points)   @par Repeats same bits for any number of threads
 std::vector<float> pointSpacing(const PointCloud& cloud, const RunContext& ctx = {});
 
-/// Leaves out points at one place but the first, and outliers: those whose spacing is over eight times the
-/// median. @return number of outliers left out
+/// Removes points that coincide with an earlier one, and outliers: those whose spacing is over eight times
+/// the median. @return number of outliers removed
 std::size_t dropOutliers(PointCloud& cloud, const RunContext& ctx = {});
 
-/// Gives every point a normal: that of the plane through its 16 nearest neighbours, turned to agree with its
-/// neighbours along a minimum spanning tree of the neighbour graph, flattest pairs first, from the highest
-/// point of each part, which looks up [hoppe1992, section 3.3].
+/// Gives every point a normal: that of the plane through its 16 nearest neighbours, oriented consistently
+/// along a minimum spanning tree of the neighbour graph, flattest pairs first, from the highest point of each
+/// component, which faces up [hoppe1992, section 3.3].
 /// @par Cost    O(points log points)   @par Repeats same bits for any number of threads
 void estimateNormals(PointCloud& cloud, const RunContext& ctx = {});
 

@@ -1,4 +1,4 @@
-// The one file that sees nanoflann.
+// The only file that includes nanoflann.
 #include "libvdbsynth/geometry/point_neighbours.h"
 
 #include <nanoflann.hpp>

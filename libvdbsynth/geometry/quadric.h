@@ -3,14 +3,14 @@
 
 namespace vdbsynth {
 
-/// The sum of squared distances to planes [garland1997], as dual contouring minimises it [ju2002,
-/// section 2.1].
+/// The sum of squared distances to planes [garland1997], as dual contouring
+/// minimises it [ju2002, section 2.1].
 class Quadric {
 public:
     /// A plane through a point, its normal of unit length.
     void add(const Vec3d& normal, const Vec3d& point, double weight = 1);
     void add(const Quadric& other);
-    /// The normal of the plane that fits all best: along it the sum grows fastest. Its sign means nothing.
+    /// The normal of the best-fitting plane: along it the sum grows fastest. Its sign is arbitrary.
     Vec3d mainNormal() const;
     bool empty() const { return mWeight == 0; }
 
@@ -18,9 +18,9 @@ public:
         Vec3d point;
         int rank = 0;  ///< of the planes: 1 flat, 2 on an edge, 3 in a corner
     };
-    /// The place of the smallest sum nearest to `start`: a direction in which the planes differ by too little
-    /// keeps the start's coordinate. The start if no plane was added.
-    /// @param edgeCut, cornerCut  what the second and third eigenvalue must be of the first to count
+    /// The minimiser nearest to `start`: a direction in which the planes differ too little keeps the start's
+    /// coordinate. The start if no plane was added.
+    /// @param edgeCut, cornerCut  least ratio of the second and third eigenvalue to the first to count
     Minimum minimum(const Vec3d& start, double edgeCut = 0.02, double cornerCut = 0.02) const;
 
 private:

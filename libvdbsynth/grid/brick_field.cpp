@@ -23,12 +23,12 @@ BrickField::BrickField(const IndexBox& box, float value) : mBox(box) {
     if (box.empty()) throw Error(ErrorCode::InvalidOption, "a field needs a box of at least one voxel");
     const Index3 size = box.size();
     mBricks = {(size.x + kSide - 1) / kSide, (size.y + kSide - 1) / kSide, (size.z + kSide - 1) / kSide};
-    constexpr double kMostBricks = 1e11;  // eight bytes each; products of more than 2^64 would wrap
+    constexpr double kMostBricks = 1e11;  // eight bytes each; larger products could exceed 2^64
     if (double(mBricks.x) * mBricks.y * mBricks.z > kMostBricks)
         throw Error(ErrorCode::Memory, "a field of " + std::to_string(size.x) + " x " +
                                            std::to_string(size.y) + " x " + std::to_string(size.z) +
                                            " voxels is too large");
-    const std::size_t count = std::size_t(mBricks.x) * std::size_t(mBricks.y) * std::size_t(mBricks.z);
+    const std::size_t count = latticeCount(mBricks);
     mSlots.assign(count, -1);
     mConstants.assign(count, value);
 }
@@ -47,10 +47,7 @@ BrickField BrickField::generate(const IndexBox& box, const RunContext& ctx,
         Chunk& chunk = chunks[begin / kGrain];
         float samples[kSamples];
         for (std::size_t brick = begin; brick < end; ++brick) {
-            const int bz = int(brick % std::size_t(field.mBricks.z));
-            const int by = int(brick / std::size_t(field.mBricks.z) % std::size_t(field.mBricks.y));
-            const int bx = int(brick / std::size_t(field.mBricks.z) / std::size_t(field.mBricks.y));
-            fill(IndexBox::cube(box.min + Index3{bx, by, bz} * kSide, kSide), samples);
+            fill(IndexBox::cube(box.min + latticeVoxel(brick, field.mBricks) * kSide, kSide), samples);
             if (isConstant(samples, kSamples)) {
                 field.mConstants[brick] = samples[0];
             } else {
@@ -85,7 +82,7 @@ void BrickField::readBox(const Index3& corner, const Index3& size, float* out) c
         const int x = std::clamp(corner.x + i, mBox.min.x, mBox.max.x) - mBox.min.x;
         for (int j = 0; j < size.y; ++j) {
             const int y = std::clamp(corner.y + j, mBox.min.y, mBox.max.y) - mBox.min.y;
-            float* row = out + (std::size_t(i) * std::size_t(size.y) + std::size_t(j)) * std::size_t(size.z);
+            float* row = out + latticeIndex({i, j, 0}, size);
             int k = 0;
             while (k < size.z) {
                 const int z = std::clamp(corner.z + k, mBox.min.z, mBox.max.z) - mBox.min.z;
@@ -118,21 +115,14 @@ float* BrickField::touch(std::size_t brick) {
 void BrickField::writeBox(const Index3& corner, const Index3& size, const float* values,
                           const std::uint8_t* mask) {
     const IndexBox part = mBox.intersection({corner, corner + size - Index3{1, 1, 1}});
-    for (int x = part.min.x; x <= part.max.x; ++x) {
-        for (int y = part.min.y; y <= part.max.y; ++y) {
-            for (int z = part.min.z; z <= part.max.z; ++z) {
-                const std::size_t source =
-                    (std::size_t(x - corner.x) * std::size_t(size.y) + std::size_t(y - corner.y)) *
-                        std::size_t(size.z) +
-                    std::size_t(z - corner.z);
-                if (mask && !mask[source]) continue;
-                const int lx = x - mBox.min.x, ly = y - mBox.min.y, lz = z - mBox.min.z;
-                const std::size_t brick = brickIndex(lx / kSide, ly / kSide, lz / kSide);
-                if (mSlots[brick] < 0 && mConstants[brick] == values[source]) continue;
-                touch(brick)[((lx % kSide) * kSide + ly % kSide) * kSide + lz % kSide] = values[source];
-            }
-        }
-    }
+    forEachVoxel(part, [&](const Index3& p) {
+        const std::size_t source = latticeIndex(p - corner, size);
+        if (mask && !mask[source]) return;
+        const Index3 l = p - mBox.min;
+        const std::size_t brick = brickIndex(l.x / kSide, l.y / kSide, l.z / kSide);
+        if (mSlots[brick] < 0 && mConstants[brick] == values[source]) return;
+        touch(brick)[((l.x % kSide) * kSide + l.y % kSide) * kSide + l.z % kSide] = values[source];
+    });
 }
 
 bool BrickField::constantIn(const IndexBox& region, float& value) const {
@@ -159,7 +149,7 @@ std::size_t BrickField::memoryBytes() const {
 
 bool BrickField::finite() const {
     const auto fine = [](float value) { return std::isfinite(value); };
-    // Constants of stored bricks are not read by anything.
+    // Constants of stored bricks are never read.
     for (std::size_t brick = 0; brick < mSlots.size(); ++brick)
         if (mSlots[brick] < 0 && !fine(mConstants[brick])) return false;
     return std::all_of(mSamples.begin(), mSamples.end(), fine);

@@ -1,6 +1,7 @@
 #include "libvdbsynth/grid/pyramid.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/math/lattice.h"
 
 #include <algorithm>
 #include <vector>
@@ -10,20 +11,18 @@ namespace {
 
 constexpr int kSide = BrickField::kSide;
 
-// Sums over `cell` neighbours along the last axis of a [rows x length] array, then turns the axes
+// Sums over `cell` neighbours along the last axis of a [rows x length] array, then transposes the axes
 // (x,y,z) to (z,x,y): three passes sum a cube and restore the order.
-void sumAndTurn(const std::vector<double>& in, int nx, int ny, int nz, int cell, std::vector<double>& out) {
-    const int mz = nz - cell + 1;
-    out.assign(std::size_t(mz) * std::size_t(nx) * std::size_t(ny), 0.0);
-    for (int x = 0; x < nx; ++x)
-        for (int y = 0; y < ny; ++y) {
-            const double* row =
-                in.data() + (std::size_t(x) * std::size_t(ny) + std::size_t(y)) * std::size_t(nz);
-            for (int z = 0; z < mz; ++z) {
+void sumAndTranspose(const std::vector<double>& in, const Index3& size, int cell, std::vector<double>& out) {
+    const Index3 transposed{size.z - cell + 1, size.x, size.y};
+    out.assign(latticeCount(transposed), 0.0);
+    for (int x = 0; x < size.x; ++x)
+        for (int y = 0; y < size.y; ++y) {
+            const double* row = in.data() + latticeIndex({x, y, 0}, size);
+            for (int z = 0; z < transposed.x; ++z) {
                 double sum = 0;
                 for (int k = 0; k < cell; ++k) sum += row[z + k];
-                out[(std::size_t(z) * std::size_t(nx) + std::size_t(x)) * std::size_t(ny) + std::size_t(y)] =
-                    sum;
+                out[latticeIndex({z, x, y}, transposed)] = sum;
             }
         }
 }
@@ -45,12 +44,12 @@ BrickField slidingMean(const BrickField& field, int cell, const RunContext& ctx)
         const int n = kSide + cell - 1;
         thread_local std::vector<float> values;
         thread_local std::vector<double> a, b;
-        values.resize(std::size_t(n) * std::size_t(n) * std::size_t(n));
+        values.resize(latticeCount({n, n, n}));
         field.readBox(brick.min, {n, n, n}, values.data());
         a.assign(values.begin(), values.end());
-        sumAndTurn(a, n, n, n, cell, b);
-        sumAndTurn(b, kSide, n, n, cell, a);
-        sumAndTurn(a, kSide, kSide, n, cell, b);
+        sumAndTranspose(a, {n, n, n}, cell, b);
+        sumAndTranspose(b, {kSide, n, n}, cell, a);
+        sumAndTranspose(a, {kSide, kSide, n}, cell, b);
         for (std::size_t i = 0; i < BrickField::kSamples; ++i) samples[i] = float(b[i] * scale);
     });
 }
@@ -80,16 +79,14 @@ BrickField halved(const BrickField& field, const RunContext& ctx) {
         thread_local std::vector<float> values;
         values.resize(8 * BrickField::kSamples);
         field.readBox(brick.min * 2, {2 * kSide, 2 * kSide, 2 * kSide}, values.data());
-        for (int x = 0; x < kSide; ++x)
-            for (int y = 0; y < kSide; ++y)
-                for (int z = 0; z < kSide; ++z) {
-                    double sum = 0;
-                    for (int corner = 0; corner < 8; ++corner)
-                        sum += values[std::size_t(
-                            ((2 * x + (corner >> 2)) * 2 * kSide + 2 * y + ((corner >> 1) & 1)) * 2 * kSide +
-                            2 * z + (corner & 1))];
-                    *samples++ = float(sum * 0.125);
-                }
+        forEachVoxel(IndexBox::cube({0, 0, 0}, kSide), [&](const Index3& p) {
+            double sum = 0;
+            for (int corner = 0; corner < 8; ++corner)
+                sum += values[std::size_t(
+                    ((2 * p.x + (corner >> 2)) * 2 * kSide + 2 * p.y + ((corner >> 1) & 1)) * 2 * kSide +
+                    2 * p.z + (corner & 1))];
+            *samples++ = float(sum * 0.125);
+        });
     });
 }
 
@@ -101,27 +98,35 @@ BrickField halvedMask(const BrickField& mask, const RunContext& ctx) {
     });
 }
 
+bool blockFitsInside(const BrickField& mask, int block, const RunContext& ctx) {
+    const IndexBox box = mask.box();
+    const BrickField means = slidingMean(mask, block, ctx);
+    for (int x = box.min.x; x + block - 1 <= box.max.x; ++x)
+        for (int y = box.min.y; y + block - 1 <= box.max.y; ++y)
+            for (int z = box.min.z; z + block - 1 <= box.max.z; ++z)
+                if (means.inside({x, y, z}) == 1.f) return true;
+    return false;
+}
+
 BrickField doubled(const BrickField& field, const Index3& size, const RunContext& ctx) {
     return BrickField::generate(IndexBox::fromSize(size), ctx, [&](const IndexBox& brick, float* samples) {
         constexpr int n = kSide / 2 + 2;
         const Index3 corner{brick.min.x / 2 - 1, brick.min.y / 2 - 1, brick.min.z / 2 - 1};
         float values[n * n * n];
         field.readBox(corner, {n, n, n}, values);
-        for (int x = 0; x < kSide; ++x)
-            for (int y = 0; y < kSide; ++y)
-                for (int z = 0; z < kSide; ++z) {
-                    // Fine voxel f lies at f/2 - 1/4 in coarse voxels: weights 3/4 and 1/4.
-                    const int lx = (x + 1) / 2, ly = (y + 1) / 2, lz = (z + 1) / 2;
-                    float sum = 0;
-                    for (int c = 0; c < 8; ++c) {
-                        const int dx = c >> 2, dy = (c >> 1) & 1, dz = c & 1;
-                        const float wx = (x & 1) == dx ? 0.25f : 0.75f;
-                        const float wy = (y & 1) == dy ? 0.25f : 0.75f;
-                        const float wz = (z & 1) == dz ? 0.25f : 0.75f;
-                        sum += wx * wy * wz * values[((lx + dx) * n + ly + dy) * n + lz + dz];
-                    }
-                    *samples++ = sum;
-                }
+        forEachVoxel(IndexBox::cube({0, 0, 0}, kSide), [&](const Index3& p) {
+            // Fine voxel f lies at f/2 - 1/4 in coarse voxels: weights 3/4 and 1/4.
+            const int lx = (p.x + 1) / 2, ly = (p.y + 1) / 2, lz = (p.z + 1) / 2;
+            float sum = 0;
+            for (int c = 0; c < 8; ++c) {
+                const int dx = c >> 2, dy = (c >> 1) & 1, dz = c & 1;
+                const float wx = (p.x & 1) == dx ? 0.25f : 0.75f;
+                const float wy = (p.y & 1) == dy ? 0.25f : 0.75f;
+                const float wz = (p.z & 1) == dz ? 0.25f : 0.75f;
+                sum += wx * wy * wz * values[((lx + dx) * n + ly + dy) * n + lz + dz];
+            }
+            *samples++ = sum;
+        });
     });
 }
 

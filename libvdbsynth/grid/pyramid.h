@@ -14,19 +14,23 @@ namespace vdbsynth {
 /// @par Repeats same bits for any number of threads
 BrickField slidingMean(const BrickField& field, int cell, const RunContext& ctx = {});
 
-/// From the sliding mean of a cell that of twice its side, where both are wanted.
-/// @param mean  what slidingMean gave for `cell`
+/// The sliding mean of a cell of twice the side from that of a cell, if both are needed.
+/// @param mean  the slidingMean for `cell`
 BrickField twiceSlidingMean(const BrickField& mean, int cell, const RunContext& ctx = {});
 
-/// The field at half the resolution: the mean of each 2x2x2 cube [lagae2004, section 5.2]. The result's
-/// box starts at 0 and has ceil(n/2) voxels a side; the half-filled last layer of an odd side averages the
-/// samples there are.
+/// The field at half the resolution: the mean of each 2x2x2 cube [lagae2004, section 5.2]. The
+/// result's box starts at 0 and has ceil(n/2) voxels a side; the half-filled last layer of an odd side
+/// averages the existing samples.
 /// @param field  box starting at 0
 BrickField halved(const BrickField& field, const RunContext& ctx = {});
 
 /// A mask of 0 and 1 at half the resolution: 1 only where all of a cube's samples are.
 /// @param mask  box starting at 0
 BrickField halvedMask(const BrickField& mask, const RunContext& ctx = {});
+
+/// True if a cube of `block` voxels lies where a mask of 0 and 1 is 1 throughout.
+/// @par Cost    as slidingMean
+bool blockFitsInside(const BrickField& mask, int block, const RunContext& ctx = {});
 
 /// The field at twice the resolution, box [0, size), by trilinear interpolation between the centres
 /// of the coarse voxels (the inverse placement of `halved`).

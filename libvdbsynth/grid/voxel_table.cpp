@@ -1,6 +1,7 @@
 #include "libvdbsynth/grid/voxel_table.h"
 
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/math/lattice.h"
 
 #include <array>
 #include <utility>
@@ -10,7 +11,7 @@ namespace {
 
 constexpr int kSide = BrickField::kSide;
 
-// Of a place from the box's corner on, in its brick.
+// Index within its brick, for a position relative to the box's corner.
 std::size_t sampleIndex(const Index3& in) {
     return std::size_t((((in.x & 7) << 3) | (in.y & 7)) << 3 | (in.z & 7));
 }
@@ -20,7 +21,7 @@ std::size_t sampleIndex(const Index3& in) {
 VoxelTable::VoxelTable(const IndexBox& box) : mBox(box) {
     const Index3 size = box.size();
     mBricks = {(size.x + kSide - 1) / kSide, (size.y + kSide - 1) / kSide, (size.z + kSide - 1) / kSide};
-    mSlots.assign(std::size_t(mBricks.x) * std::size_t(mBricks.y) * std::size_t(mBricks.z), -1);
+    mSlots.assign(latticeCount(mBricks), -1);
 }
 
 VoxelTable VoxelTable::of(const IndexBox& box, std::vector<Index3> voxels) {
@@ -42,14 +43,12 @@ VoxelTable VoxelTable::where(const BrickField& field, const std::function<bool(f
                              const RunContext& ctx) {
     const Index3 size = field.box().size(), bricks{(size.x + kSide - 1) / kSide, (size.y + kSide - 1) / kSide,
                                                    (size.z + kSide - 1) / kSide};
-    const std::size_t plane = std::size_t(bricks.y) * std::size_t(bricks.z);
-    // Columns of bricks find their voxels side by side and are numbered one after the other.
-    std::vector<std::vector<Index3>> found(std::size_t(bricks.x) * plane);
+    // Columns of bricks find their voxels in parallel and are numbered in order.
+    std::vector<std::vector<Index3>> found(latticeCount(bricks));
     parallelFor(ctx, found.size(), 32, [&](std::size_t begin, std::size_t end) {
         std::array<float, BrickField::kSamples> samples;
         for (std::size_t b = begin; b < end; ++b) {
-            const int bx = int(b / plane), by = int(b % plane) / bricks.z, bz = int(b) % bricks.z;
-            const Index3 corner = field.box().min + Index3{bx, by, bz} * kSide;
+            const Index3 corner = field.box().min + latticeVoxel(b, bricks) * kSide;
             const IndexBox brick = IndexBox::cube(corner, kSide).intersection(field.box());
             float value = 0;
             if (field.constantIn(brick, value) && !wanted(value)) continue;

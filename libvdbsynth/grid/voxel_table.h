@@ -1,6 +1,7 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/grid/brick_field.h"
+#include "libvdbsynth/math/lattice.h"
 
 #include <cstdint>
 #include <functional>
@@ -8,18 +9,18 @@
 
 namespace vdbsynth {
 
-/// A sparse set of voxels with a number each, in the order of their bricks: what is known of voxel i is the
-/// i-th element of an array.
+/// A sparse set of voxels, numbered in the order of their bricks: element i of an array
+/// holds the data of voxel i.
 class VoxelTable {
 public:
     VoxelTable() = default;
-    /// Those voxels of a field's box whose value is wanted.
-    /// @param wanted  a pure function of the value; asked once for a brick of one value
+    /// The voxels of a field's box whose value is wanted.
+    /// @param wanted  a pure function of the value; called once for a brick of one value
     /// @par Cost    O(bricks + voxels of those that are not constant)
     /// @par Repeats same numbers for any number of threads
     static VoxelTable where(const BrickField& field, const std::function<bool(float)>& wanted,
                             const RunContext& ctx = {});
-    /// The voxels given, numbered in their order. @param box  holds them all; each comes once
+    /// The given voxels, numbered in their order. @param box  contains them all; no duplicates
     static VoxelTable of(const IndexBox& box, std::vector<Index3> voxels);
 
     std::size_t size() const { return mVoxels.size(); }
@@ -36,17 +37,14 @@ public:
     }
 
 private:
-    std::size_t brickIndex(int bx, int by, int bz) const {
-        return (std::size_t(bx) * std::size_t(mBricks.y) + std::size_t(by)) * std::size_t(mBricks.z) +
-               std::size_t(bz);
-    }
+    std::size_t brickIndex(int bx, int by, int bz) const { return latticeIndex({bx, by, bz}, mBricks); }
 
     explicit VoxelTable(const IndexBox& box);
 
     IndexBox mBox;
     Index3 mBricks;
     std::vector<std::int32_t> mSlots;    // per brick: number of its table, or -1
-    std::vector<std::int32_t> mNumbers;  // kSamples a table
+    std::vector<std::int32_t> mNumbers;  // kSamples per table
     std::vector<Index3> mVoxels;
 };
 

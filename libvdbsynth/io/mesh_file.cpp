@@ -1,9 +1,9 @@
 #include "libvdbsynth/io/mesh_file.h"
 
 #include "libvdbsynth/base/error.h"
-#include "libvdbsynth/io/mesh_readers.h"
 #include "libvdbsynth/io/path.h"
-#include "libvdbsynth/io/whole_file.h"
+#include "libvdbsynth/io/readers/mesh_readers.h"
+#include "libvdbsynth/io/readers/whole_file.h"
 
 #include <utility>
 

@@ -10,20 +10,20 @@ namespace vdbsynth {
 /// Kinds of mesh file, by extension.
 enum class MeshFormat { Obj, Ply, Stl, Off, Medit, Gltf, Glb };
 
-/// True, with the format, if the path ends in .obj, .ply, .stl, .off, .gltf, .glb or .mesh (MEDIT), any case;
-/// for a path to read also with .gz after that.
+/// True, with the format, if the path ends in .obj, .ply, .stl, .off, .gltf, .glb or .mesh (MEDIT), in any
+/// case; a path to read may also have .gz after that.
 bool meshFormatOf(const std::string& path, MeshFormat& format);
 /// The formats that writeMesh writes: all but MEDIT, never .gz.
 bool writableMeshFormatOf(const std::string& path, MeshFormat& format);
 
-/// Reads a triangle or polygon mesh. Strict: counts are checked against the file's size before anything
-/// is allocated, indices against the vertices, coordinates for finiteness. STL corners with the same bits
-/// are welded. Polygons of more than four corners become fans.
+/// Reads a triangle or polygon mesh. Strict: counts are checked against the file's size before memory is
+/// allocated, indices against the vertices, coordinates for finiteness. STL corners with the same bits are
+/// welded. Polygons of more than four corners become fans.
 /// Attributes of vertices: any scalar property of ply (see groupColumns), colours of obj ("v x y z r g b")
-/// and off (COFF), texture coordinates of obj (a vertex that has several, at a seam, is there once for each),
-/// colours, texture coordinates and custom attributes of glTF. Of glTF all meshes of the scene are read, with
-/// their nodes' transforms; buffers may be files beside it; sparse and quantised data is read, Draco and
-/// meshopt compression are errors that say so.
+/// and off (COFF), texture coordinates of obj (a vertex at a seam is duplicated for each), colours, texture
+/// coordinates and custom attributes of glTF. Of glTF all meshes of the scene are read, with their nodes'
+/// transforms; buffers may be files beside it; sparse and quantised data is supported, Draco and meshopt
+/// compression are reported as errors.
 /// @throw Error  Io (missing, a directory, not readable), BadData (truncated, corrupt, an index out of
 ///               range, NaN or infinite coordinates), EmptyInput (no faces)
 /// @par Cost     O(file size) time and memory    @par Repeats yes

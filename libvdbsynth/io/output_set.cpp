@@ -27,7 +27,7 @@ namespace {
     throw Error(ErrorCode::Io, path + ": " + what + ": " + std::strerror(errno));
 }
 
-// A killed process whose parent does not collect it stays in the table as a zombie; it writes no more.
+// A killed process whose parent does not reap it stays in the table as a zombie; it writes no more.
 bool stillRuns(pid_t process) {
     if (::kill(process, 0) != 0 && errno == ESRCH) return false;
     std::ifstream status("/proc/" + std::to_string(process) + "/stat");
@@ -55,7 +55,7 @@ void removeStale(const std::string& folder, const std::string& name) {
     }
 }
 
-// Temporaries of this process: two calls at once may write one file, a kept index for example.
+// Temporary files of this process: two concurrent calls may write one file, for example a cached index.
 class NamesInUse {
 public:
     std::string take(const std::string& beginning) {
@@ -163,7 +163,7 @@ std::string OutputSet::withoutTemporaries(std::string text) const {
 }
 
 void OutputSet::commit() {
-    // What was reserved and never written would replace a good file by an empty one.
+    // A reserved but unwritten temporary file would replace a good file by an empty one.
     const auto unwritten = std::stable_partition(mEntries.begin(), mEntries.end(),
                                                  [](const Entry& entry) { return entry.taken; });
     for (auto entry = unwritten; entry != mEntries.end(); ++entry) ::unlink(entry->temporary.c_str());

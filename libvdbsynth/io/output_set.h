@@ -7,12 +7,12 @@ namespace vdbsynth {
 
 /// The outputs of one run. Each is written to `.NAME.PID.tmp` in its own folder (`.NAME.PID-2.tmp` if another
 /// set of this process writes the same file); `commit` renames them once all are complete and on disk, so
-/// that a failed, killed or full-disk run never leaves a half file and never harms an old one. Stale
-/// temporaries of dead runs with the same name go when a path is added.
+/// that a failed, killed or full-disk run never leaves a partial file or damages an old one. Stale temporary
+/// files of dead runs with the same name are removed when a path is added.
 class OutputSet {
 public:
-    /// @param onTemporary  told each temporary's path before it is made (the supervisor removes them
-    ///                     if this process dies)
+    /// @param onTemporary  called with each temporary path before it is created (the supervisor removes them
+    /// if this process dies)
     explicit OutputSet(std::function<void(const std::string&)> onTemporary = {});
     /// Removes what was not committed.
     ~OutputSet();
@@ -23,14 +23,14 @@ public:
     /// @throw Error Io (no such folder, no permission, not a regular file), InvalidOption (named twice, also
     /// by another path)
     std::string add(const std::string& path);
-    /// Makes the temporary of an output that `add` will ask for later, so that an unwritable place is known
-    /// before the work.
+    /// Creates the temporary file of an output that `add` will request later, so that an unwritable path is
+    /// reported before the work starts.
     /// @throw Error as add
     void reserve(const std::string& path);
-    /// A message with the outputs' names where it has those of their temporaries.
+    /// A message with the outputs' names in place of their temporary files' names.
     std::string withoutTemporaries(std::string text) const;
-    /// Syncs all temporaries to disk, then renames them in the order they were added. A path that was
-    /// reserved and never asked for with `add` keeps the file it has: nobody wrote another.
+    /// Syncs all temporary files to disk, then renames them in the order they were added. A path that was
+    /// reserved but never requested with `add` keeps its old file.
     /// @throw Error Io; nothing was renamed unless a rename itself failed
     void commit();
 

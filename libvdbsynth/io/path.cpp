@@ -38,11 +38,12 @@ std::string pathBelow(const std::string& folder, const std::string& name, std::s
     namespace fs = std::filesystem;
     const fs::path relative = fs::path(name).lexically_normal();
     if (name.find('\0') != std::string::npos)
-        problem = "has a name that no file has";
+        problem = "is not a valid file name";
     else if (name.find("://") != std::string::npos)
-        problem = "is an address; only files beside or below the one that names it are read";
+        problem = "is an address; only files in or below the folder of the file that names it are read";
     else if (relative.is_absolute() || (!relative.empty() && *relative.begin() == ".."))
-        problem = "is not beside or below the file that names it; only such files are read";
+        problem =
+            "is outside the folder of the file that names it; only files in or below that folder are read";
     return (fs::path(folder) / relative).string();
 }
 

@@ -2,8 +2,8 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/raster_file.h"
-#include "libvdbsynth/io/raster_readers.h"
-#include "libvdbsynth/io/whole_file.h"
+#include "libvdbsynth/io/readers/raster_readers.h"
+#include "libvdbsynth/io/readers/whole_file.h"
 
 #include <png.h>
 
@@ -30,7 +30,7 @@ void writeImage(const std::string& path, int width, int height, png_uint_32 form
                     path + ": cannot be written: " + (errno ? std::strerror(errno) : image.message));
 }
 
-// What libpng calls back with: the bytes to read, and the message of its last error.
+// State of libpng's callbacks: the bytes to read, and the message of its last error.
 struct Source {
     const std::string& content;
     std::size_t at = 0;
@@ -58,8 +58,8 @@ struct Decoded {
     std::vector<png_bytep> rows{};
 };
 
-// libpng leaves by longjmp: nothing here has a destructor, and the caller owns what is filled. (The
-// simplified interface would turn 16-bit values, which hold heights, into linear light.)
+// libpng exits by longjmp: nothing here has a destructor, and the caller owns the output. (The simplified
+// interface would convert 16-bit values, which hold heights, to linear light.)
 bool decode(png_structp png, png_infop info, Source& source, Decoded& image, const RunContext& ctx) {
     if (setjmp(png_jmpbuf(png))) return false;
     png_set_read_fn(png, &source, readBytes);
@@ -73,7 +73,7 @@ bool decode(png_structp png, png_infop info, Source& source, Decoded& image, con
     image.channels = png_get_channels(png, info);
     image.bits = png_get_bit_depth(png, info);
     const std::size_t row = png_get_rowbytes(png, info);
-    // A row of zeros deflates to a thousandth: more pixels than that cannot be in the file.
+    // A row of zeros deflates to a thousandth: the file cannot hold more pixels than that.
     if (double(row) * image.height > 1100.0 * double(source.content.size()) + 1e6)
         png_error(png, "truncated");
     requireMemory(ctx, double(row) * image.height * 3,

@@ -5,7 +5,7 @@
 
 namespace vdbsynth {
 
-/// An 8-bit colour picture, rows from the top, three bytes a pixel.
+/// An 8-bit colour picture, rows from the top, three bytes per pixel.
 struct Picture {
     int width = 0, height = 0;
     std::vector<std::uint8_t> pixels;  ///< [height x width x 3]

@@ -1,10 +1,10 @@
 #include "libvdbsynth/io/point_file.h"
 
 #include "libvdbsynth/base/error.h"
-#include "libvdbsynth/io/gzip.h"
 #include "libvdbsynth/io/path.h"
-#include "libvdbsynth/io/point_readers.h"
-#include "libvdbsynth/io/whole_file.h"
+#include "libvdbsynth/io/readers/gzip.h"
+#include "libvdbsynth/io/readers/point_readers.h"
+#include "libvdbsynth/io/readers/whole_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ bool isFinite(const Vec3f& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// Leaves out points that are not finite; normals that one point lacks, for all.
+// Removes points that are not finite, and all normals if one point lacks its normal.
 std::size_t clean(PointCloud& cloud) {
     bool normals = cloud.normals.size() == cloud.points.size();
     std::size_t kept = 0;
@@ -49,7 +49,7 @@ bool isPointPath(const std::string& path) {
 
 bool holdsPoints(const std::string& path) {
     if (readExtensionOf(path) != "ply") return false;
-    // A header is short; the whole of a large file need not be read twice.
+    // A header is short, so most of a large file need not be read twice.
     std::string start(1 << 16, '\0');
     std::ifstream file(path, std::ios::binary);
     file.read(start.data(), std::streamsize(start.size()));

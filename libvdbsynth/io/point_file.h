@@ -6,7 +6,7 @@
 
 namespace vdbsynth {
 
-/// True if the path ends in .xyz, .pwn or .pcd, any case, perhaps with .gz after that. A .ply may also hold
+/// True if the path ends in .xyz, .pwn or .pcd, in any case, with or without .gz. A .ply may also hold
 /// points; see holdsPoints.
 bool isPointPath(const std::string& path);
 
@@ -19,14 +19,13 @@ struct PointFile {
     std::size_t invalid = 0;  ///< points left out because a coordinate was not finite
 };
 
-/// Reads a point cloud, with normals where it has them and every one has a length:
-/// - .xyz, .pwn: rows of numbers; columns 4 to 6, or 7 to 9, are normals if all are unit vectors, within 2 %,
-/// else
-///   colours if all are from 0 to 255.
-///   A .pwn may also begin with a count, followed by all points, then all normals;
+/// Reads a point cloud, with normals if it has them and none has length zero:
+/// - .xyz, .pwn: rows of numbers; columns 4 to 6, or 7 to 9, are normals if all are unit vectors, within
+///   2 %, else colours if all are from 0 to 255. A .pwn may also begin with a count, followed by all
+///   points, then all normals;
 /// - .pcd: ascii, binary and binary_compressed, fields of any type and order;
 /// - .ply: as readMesh, vertices with nx ny nz.
-/// Strict as readMesh, but for not finite coordinates, with which scanners mark pixels without a point.
+/// Strict as readMesh, except for non-finite coordinates, with which scanners mark pixels without a point.
 /// @throw Error Io, BadData (truncated, corrupt, no x y z), EmptyInput (no points), InvalidOption (extension)
 /// @par Cost    O(file size)   @par Repeats yes
 PointFile readPoints(const std::string& path, const RunContext& ctx = {});

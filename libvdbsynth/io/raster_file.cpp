@@ -2,8 +2,8 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
-#include "libvdbsynth/io/raster_readers.h"
-#include "libvdbsynth/io/whole_file.h"
+#include "libvdbsynth/io/readers/raster_readers.h"
+#include "libvdbsynth/io/readers/whole_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -108,13 +108,13 @@ Raster makeRaster(const std::string& path, std::int64_t columns, std::int64_t ro
     constexpr std::int64_t kMost = 1 << 24;
     for (const std::int64_t side : {columns, rows, slices})
         if (side < 1 || side > kMost)
-            throw Error(ErrorCode::BadData, path + ": says it has " + std::to_string(columns) + " x " +
+            throw Error(ErrorCode::BadData, path + ": its header claims " + std::to_string(columns) + " x " +
                                                 std::to_string(rows) + " x " + std::to_string(slices) +
                                                 " samples; 1 to " + std::to_string(kMost) +
-                                                " a side are read");
+                                                " per side are supported");
     const double bytes = double(columns) * double(rows) * double(slices) * double(channels) * sizeof(float);
     requireMemory(ctx, bytes, path, "crop or shrink it first");
-    if (bytes > 256e9) throw Error(ErrorCode::BadData, path + ": says it has over 256 GB of samples");
+    if (bytes > 256e9) throw Error(ErrorCode::BadData, path + ": its header claims over 256 GB of samples");
     Raster raster;
     raster.size = {int(columns), int(rows), int(slices)};
     raster.channels = channels;

@@ -1,33 +1,31 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
-#include "libvdbsynth/grid/raster.h"
+#include "libvdbsynth/raster/raster.h"
 
 #include <string>
 
 namespace vdbsynth {
 
-/// True if the path ends, in any case and perhaps with .gz after it, in an extension of an image: .png, .jpg,
+/// True if the path ends, in any case and with or without .gz, in an extension of an image: .png, .jpg,
 /// .jpeg, .pgm, .ppm, .pnm, .tif, .tiff, .exr; or of a volume: .npy, .vti, .nii, .sgems, .inr. A .tif of
-/// several pages and an .npy of three dimensions are volumes, one of two dimensions is an image.
+/// several pages and an .npy of three dimensions are volumes; an .npy of two dimensions is an image.
 bool isRasterPath(const std::string& path);
 /// The extensions of isRasterPath in words, for messages.
 extern const char* const kRasterExtensions;
 
-/// Reads an image or a volume. Sizes are checked against the file's size or `maxMemory` before anything is
-/// allocated.
-/// - png (1 to 16 bits, palettes), jpg, pgm and ppm (ascii or binary, to 16 bits), tif (8 to 64 bits, whole
-/// or float,
-///   strips or tiles, GDAL's no-data value, GeoTIFF's pixel size: metres, or degrees turned to metres at the
-///   image's middle), exr (Y, else R G B, else the first channel). A pixel of alpha zero has no data; other
-///   alpha is ignored.
-/// - npy (any real type, either order: the last index runs along columns; two or three dimensions), vti
-/// (ascii,
-///   inline and appended base64, raw, zlib), nii (NIfTI-1 and 2; axes flipped and permuted to point to the
-///   patient's right, front and top, an oblique rotation is left out with a note), sgems and gslib text, inr.
-/// @throw Error Io, BadData (truncated, corrupt, a kind of file or data that is not read), EmptyInput (no
-/// samples),
-///              Memory, InvalidOption (extension)
-/// @par Cost    O(samples), four bytes a sample and channel beside the file   @par Repeats yes
+/// Reads an image or a volume. Sizes are checked against the file's size or `maxMemory`
+/// before memory is allocated.
+/// - png (1 to 16 bits, palettes), jpg, pgm and ppm (ascii or binary, to 16 bits), tif (8 to 64 bits, integer
+///   or float, strips or tiles, GDAL's no-data value, GeoTIFF's pixel size: metres, or degrees converted to
+///   metres at the image's middle), exr (Y, else R G B, else the first channel). A pixel of alpha zero has no
+///   data; other alpha is ignored.
+/// - npy (any real type, either order: the last index runs along columns; two or three dimensions),
+///   vti (ascii, inline and appended base64, raw, zlib), nii (NIfTI-1 and 2; axes flipped and permuted
+///   to point to the patient's right, front and top; an oblique rotation is ignored with a note),
+///   sgems and gslib text, inr.
+/// @throw Error Io, BadData (truncated, corrupt, an unsupported kind of file or data), EmptyInput (no
+/// samples), Memory, InvalidOption (extension)
+/// @par Cost    O(samples), four bytes per sample and channel besides the file   @par Repeats yes
 Raster readRaster(const std::string& path, const RunContext& ctx = {});
 
 /// Writes a grey image of 16 bits, with alpha where `values` has NaN. @param values  [height x width] 0..1

@@ -18,7 +18,7 @@ void ElementSources::append(const Source& source) {
 }
 
 void ElementSources::add(std::vector<Source> sources) {
-    requireOption(mKind != ElementKind::Voxel, "kind", "voxel", "another; a voxel is added by its place");
+    requireOption(mKind != ElementKind::Voxel, "kind", "voxel", "another kind; voxels are added by position");
     std::stable_sort(sources.begin(), sources.end(),
                      [](const Source& a, const Source& b) { return a.weight > b.weight; });
     for (const Source& source : sources) append(source);
@@ -27,7 +27,7 @@ void ElementSources::add(std::vector<Source> sources) {
 
 void ElementSources::add(const Index3& voxel, const Source& source) {
     requireOption(mKind == ElementKind::Voxel, "kind", "point, vertex or corner",
-                  "voxel; other elements are added by their order");
+                  "voxel; other elements are added in order");
     append(source);
     mVoxels.push_back(voxel);
     mEnd.push_back(mSources.size());

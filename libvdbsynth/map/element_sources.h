@@ -8,17 +8,16 @@
 
 namespace vdbsynth {
 
-/// One place of an exemplar that an element of a result was copied from.
+/// One position of an exemplar that an element of a result was copied from.
 struct Source {
     std::int32_t exemplar = 0;  ///< its number among the map's exemplars
-    Vec3d position;             ///< [voxels] index space of the exemplar, between voxels too
+    Vec3d position;             ///< [voxels] index space of the exemplar, may lie between voxels
     Vec3f rotation;             ///< [radians] axis times angle, from the exemplar to the result
-    float scale = 1;            ///< size of a feature in the result over its size in the exemplar, each in
-                                ///< its own voxels
-    float weight = 1;           ///< over 0, beside the element's other sources
+    float scale = 1;   ///< feature size in the result over that in the exemplar, each in its own voxels
+    float weight = 1;  ///< over 0, relative to the element's other sources
 };
 
-/// What a map speaks of.
+/// The kind of elements that a map covers.
 enum class ElementKind {
     Voxel,   ///< of a level set
     Point,   ///< of a point set
@@ -26,8 +25,8 @@ enum class ElementKind {
     Corner   ///< of a face of a mesh, where neighbouring faces may differ
 };
 
-/// The sources of single elements of a result, any number each: what methods write that do not copy blocks.
-/// Elements of another kind than voxels are known by their number in the point set or mesh.
+/// The sources of single elements of a result, any number each, as written by methods that do not copy
+/// blocks. Elements other than voxels are identified by their number in the point set or mesh.
 class ElementSources {
 public:
     /// The sources of one element, the one with the largest weight first.
@@ -42,12 +41,12 @@ public:
     explicit ElementSources(ElementKind kind) : mKind(kind) {}
 
     ElementKind kind() const { return mKind; }
-    /// Number of elements, those without a source included.
+    /// Number of elements, including those without a source.
     std::size_t size() const { return mEnd.size(); }
-    /// Appends an element that is no voxel. Sources are sorted by weight, equal ones stay in their order.
+    /// Appends an element that is not a voxel. Sources are sorted by weight; equal ones stay in their order.
     /// @throw Error InvalidOption (a voxel's map; a weight not over 0; a position that is not finite)
     void add(std::vector<Source> sources);
-    /// Appends a voxel. @param voxel  index space of the result; each may come once, the caller sees to that
+    /// Appends a voxel. @param voxel  index space of the result; the caller must add each only once
     /// @throw Error InvalidOption (a map of another kind; as above)
     void add(const Index3& voxel, const Source& source);
 
@@ -59,7 +58,7 @@ public:
         const Range range = (*this)[element];
         return range.empty() ? nullptr : range.first;
     }
-    /// [elements] of a voxel map, in the order of adding; else empty.
+    /// [elements] of a voxel map, in the order added; else empty.
     const std::vector<Index3>& voxels() const { return mVoxels; }
 
 private:

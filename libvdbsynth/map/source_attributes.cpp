@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kExactFloat = 1 << 24;
 
-// Appends the vector that `of` makes of every element's strongest source, if any of them is not `usual`.
+// Appends the vector that `of` gives for every element's strongest source, if any differs from `usual`.
 template <typename Of>
 void append(Attributes& attributes, const ElementSources& sources, const char* name, std::size_t width,
             float usual, bool always, const Of& of) {
@@ -38,7 +38,7 @@ Vec3d voxelOf(const Source& source) {
     return {double(voxel.x), double(voxel.y), double(voxel.z)};
 }
 
-// The largest coordinate, not a number if any is none.
+// The largest coordinate, NaN if any is NaN.
 double farthest(const Vec3d& place) {
     if (!std::isfinite(dot(place, place))) return NAN;
     return std::max({std::abs(place.x), std::abs(place.y), std::abs(place.z)});
@@ -111,17 +111,18 @@ ElementSources sourcesFromAttributes(const Attributes& attributes, ElementKind k
             continue;
         }
         Source source;
-        const Vec3d place = rowOf(voxel, i, 0), by = rowOf(offset, i, 0), turn = rowOf(rotation, i, 0);
+        const Vec3d place = rowOf(voxel, i, 0), by = rowOf(offset, i, 0),
+                    rotationVector = rowOf(rotation, i, 0);
         source.scale = float(rowOf(scale, i, 1).x);
         source.weight = float(rowOf(weight, i, 1).x);
         if (!(number >= 0 && number < kExactFloat && number == std::floor(number)) ||
-            !(farthest(place) <= kExactFloat) || !(length(by) <= 2) || !(length(turn) <= 100) ||
+            !(farthest(place) <= kExactFloat) || !(length(by) <= 2) || !(length(rotationVector) <= 100) ||
             !(source.scale > 0 && source.scale < 1e6f) || !(source.weight > 0 && source.weight < 1e6f))
             throw Error(ErrorCode::BadData,
-                        "element " + std::to_string(i) + " of the source map has numbers that are no source");
+                        "element " + std::to_string(i) + " of the source map has invalid numbers");
         source.exemplar = std::int32_t(number);
         source.position = place + by;
-        source.rotation = cast<float>(turn);
+        source.rotation = cast<float>(rotationVector);
         sources.add({source});
     }
     return sources;
@@ -130,7 +131,7 @@ ElementSources sourcesFromAttributes(const Attributes& attributes, ElementKind k
 Attribute transferredAttribute(const ElementSources& sources, const AttributeReader& reader, bool blended,
                                const RunContext& ctx) {
     requireOption(reader.width >= 1 && reader.width <= 3 && (!reader.direction || reader.width == 3), "width",
-                  std::to_string(reader.width), "1 to 3, and 3 of a direction");
+                  std::to_string(reader.width), "1 to 3, and 3 for a direction");
     Attribute attribute{reader.name, reader.width, std::vector<float>(sources.size() * reader.width, 0.f)};
     parallelFor(ctx, sources.size(), 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -140,7 +141,8 @@ Attribute transferredAttribute(const ElementSources& sources, const AttributeRea
                 std::array<float, 3> read{};
                 if (!reader.read(source.exemplar, source.position, read.data())) continue;
                 Vec3d value{double(read[0]), double(read[1]), double(read[2])};
-                if (reader.direction) value = transformed(turnBy(cast<double>(source.rotation)), value);
+                if (reader.direction)
+                    value = transformed(rotationMatrix(cast<double>(source.rotation)), value);
                 const double weight = blended ? double(source.weight) : 1;
                 sum = sum + value * weight;
                 total += weight;

@@ -6,6 +6,7 @@
 #include "libvdbsynth/grid/voxel_table.h"
 #include "libvdbsynth/map/exemplar_variant.h"
 #include "libvdbsynth/map/source_map.h"
+#include "libvdbsynth/math/lattice.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +16,7 @@
 namespace vdbsynth {
 namespace {
 
-// How a voxel's source is read: a sample's place, and by how much it moves a voxel of the map along x, y, z.
+// How a voxel's source is read: a sample's position, and its displacement per voxel of the map along x, y, z.
 struct Reader {
     const BrickField* field = nullptr;
     Vec3f at, x, y, z;
@@ -30,7 +31,7 @@ Reader readerOf(const Source& source, const ExemplarSamples& samples) {
     reader.field = samples.field.get();
     reader.at = cast<float>((source.position - samples.corner) * samples.samplesPerVoxel);
     const double step = samples.samplesPerVoxel / double(source.scale);
-    const Affine back = turnBy(-cast<double>(source.rotation));
+    const Affine back = rotationMatrix(-cast<double>(source.rotation));
     const auto moved = [&](const Vec3d& along) { return cast<float>(transformed(back, along) * step); };
     reader.x = moved({1, 0, 0});
     reader.y = moved({0, 1, 0});
@@ -38,17 +39,21 @@ Reader readerOf(const Source& source, const ExemplarSamples& samples) {
     return reader;
 }
 
-// 1 up to a voxel away, 0 from two on: no proposal comes or goes at once between the map's voxels, where
+// 1 up to a voxel away, 0 from two on: no proposal starts or ends abruptly between the map's voxels, where
 // finer ones lie.
 float taper(float offset) {
     return std::clamp(2 - std::abs(offset), 0.f, 1.f);
 }
 
-// The voxels of the map along an axis whose taper at `from` is over 0.
-struct Reach {
-    explicit Reach(float from) : first(int(std::floor(from)) - 1), last(int(std::ceil(from)) + 1) {}
-    int first, last;
-};
+// The voxels of the map around one whose taper at `from` is over 0.
+IndexBox reachOf(const Vec3f& from) {
+    IndexBox reach;
+    for (int axis = 0; axis < 3; ++axis) {
+        reach.min[axis] = int(std::floor(from[axis])) - 1;
+        reach.max[axis] = int(std::ceil(from[axis])) + 1;
+    }
+    return reach;
+}
 
 class Gather {
 public:
@@ -62,30 +67,27 @@ public:
         makeReaders(sources, exemplars, ctx);
     }
 
-    // A voxel of the result, from its box's corner on; `value` stays where there is no source.
+    // A voxel of the result, relative to its box's corner; `value` does not change where there is no source.
     void read(const Index3& local, float& value) const {
-        // Voxel i of the map is the voxels factor * i + shift .. that begin at finerBox.
+        // Voxel i of the map covers the voxels factor * i + shift .. that begin at finerBox.
         const Index3 fine = local + mFirst;
         const Index3 voxel{local.x / mFactor + mBox.min.x, local.y / mFactor + mBox.min.y,
                            local.z / mFactor + mBox.min.z};
         if (mTable.find(voxel) < 0) return;
-        // How far the place is from that voxel's middle [voxels of the map].
+        // Distance of the position from that voxel's middle [voxels of the map].
         Vec3f from;
         for (int axis = 0; axis < 3; ++axis)
             from[axis] = float(fine[axis] - voxel[axis] * mFactor) / float(mFactor);
         float sum = 0, weights = 0;
-        const Reach reach[3] = {Reach(from.x), Reach(from.y), Reach(from.z)};
-        for (int x = reach[0].first; x <= reach[0].last; ++x)
-            for (int y = reach[1].first; y <= reach[1].last; ++y)
-                for (int z = reach[2].first; z <= reach[2].last; ++z) {
-                    const std::int32_t j = mTable.find(voxel + Index3{x, y, z});
-                    if (j < 0) continue;
-                    const Vec3f offset = from - Vec3f{float(x), float(y), float(z)};
-                    const float weight =
-                        taper(offset.x) * taper(offset.y) * taper(offset.z) / (1 + dot(offset, offset));
-                    sum += weight * std::clamp(mReaders[std::size_t(j)](offset), -mLimit, mLimit);
-                    weights += weight;
-                }
+        forEachVoxel(reachOf(from), [&](const Index3& step) {
+            const std::int32_t j = mTable.find(voxel + step);
+            if (j < 0) return;
+            const Vec3f offset = from - Vec3f{float(step.x), float(step.y), float(step.z)};
+            const float weight =
+                taper(offset.x) * taper(offset.y) * taper(offset.z) / (1 + dot(offset, offset));
+            sum += weight * std::clamp(mReaders[std::size_t(j)](offset), -mLimit, mLimit);
+            weights += weight;
+        });
         value = sum / weights;
     }
 

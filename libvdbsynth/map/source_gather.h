@@ -9,26 +9,26 @@
 
 namespace vdbsynth {
 
-/// A field over an exemplar and where its samples lie: sample p is at corner + p / samplesPerVoxel of the
-/// exemplar's index space as the map counts it.
+/// A field over an exemplar and the position of its samples: sample p is at corner + p / samplesPerVoxel of
+/// the exemplar's index space in the map's coordinates.
 struct ExemplarSamples {
     std::shared_ptr<const BrickField> field;  ///< its box begins at 0; values in voxels of the result
     Vec3d corner;
     double samplesPerVoxel = 1;  ///< the texture's scale, times the factor of a finer exemplar
 };
 
-/// Distances read through the sources of voxels. A place v in a voxel of the map that has a source takes the
-/// mean of what the sources of the voxels j around it propose for it,
+/// Distances read through the sources of voxels. A position v in a voxel of the map with a source takes the
+/// mean of the proposals of the sources of the voxels j around it,
 ///     value(v) = sum_j w(v - j) E_j(x_j + R_j^T (v - j) / s_j) / sum_j w(v - j)
 ///     w(o) = t(o_x) t(o_y) t(o_z) / (1 + |o|^2),   t(a) = min(1, max(0, 2 - |a|))
 /// with x, R and s the position, rotation and scale of a source (volume_analogy.h). In the middle of a voxel
-/// these are itself and its 26 neighbours. Sources that continue each other propose one value; where they do
-/// not, the mean has no seam.
+/// these are the voxel itself and its 26 neighbours. Sources that continue each other propose one value;
+/// where they do not, the mean has no seam.
 /// A field of `factor` times the map's resolution is read at the voxels that make up each voxel of the map.
 /// @param sources    of voxels, each with one source
-/// @param mapBox     the target box as the map counts
+/// @param mapBox     the target box in the map's coordinates
 /// @param factor     1..64
-/// @param otherwise  what voxels without a source are; the result's resolution, box begins at 0
+/// @param otherwise  values of voxels without a source; the result's resolution, box begins at 0
 /// @param limit      [voxels of the result] proposals are clamped there
 /// @par Cost    O(voxels with a source * factor^3 * 27)   @par Repeats same bits for any number of threads
 BrickField gatherThroughSources(const ElementSources& sources, const IndexBox& mapBox, int factor,

@@ -1,6 +1,7 @@
 #include "libvdbsynth/map/source_map.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/math/lattice.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +9,9 @@
 namespace vdbsynth {
 namespace {
 
-constexpr double kFarthest = 1 << 30;  // [voxels] of any coordinate, so that sums of two fit
+constexpr double kFarthest = 1 << 30;  // [voxels] limit of any coordinate, so that sums of two fit
 
-// What a block of the lattice has at a voxel of the target.
+// The source that a block of the lattice gives a voxel of the target.
 Source sourceOf(const SourceMap& map, const Index3& block, const Index3& voxel) {
     const Index3 local = voxel - map.targetBox.min;
     const std::size_t at = map.patches.index(block), number = std::size_t(map.patches.exemplar[at]);
@@ -45,7 +46,7 @@ void requireBlocksAt(const SourceMap& map, const Index3& voxel) {
         throw Error(ErrorCode::InvalidOption, "`voxel`: lies outside the map's target");
 }
 
-// Thrown inside requireSound, which knows whose map it is.
+// Thrown inside requireSound, which adds the name of the map.
 struct Unsound {
     std::string what;
 };
@@ -54,8 +55,8 @@ void require(bool sound, const char* what) {
     if (!sound) throw Unsound{what};
 }
 
-// Where the sources of a number may lie.
-IndexBox roomOf(const SourceMap& map, std::int32_t number) {
+// Box of the sources of an exemplar or variant.
+IndexBox sourceBoxOf(const SourceMap& map, std::int32_t number) {
     return IndexBox::fromSize(map.variants.empty() ? map.exemplars[std::size_t(number)].box.size()
                                                    : map.variants[std::size_t(number)].size);
 }
@@ -74,7 +75,7 @@ void requireSoundPatches(const SourceMap& map) {
     for (std::size_t i = 0; i < patches.source.size(); ++i) {
         const std::int32_t number = patches.exemplar[i];
         require(number >= 0 && std::size_t(number) < count, "names an exemplar that it does not have");
-        require(roomOf(map, number).contains(patches.source[i]), "points outside the exemplar");
+        require(sourceBoxOf(map, number).contains(patches.source[i]), "points outside the exemplar");
     }
     for (float weight : patches.weight)
         require(weight > 0 && weight <= 1, "has a vote weight that is not over 0 and at most 1");
@@ -101,7 +102,7 @@ void requireSoundVariants(const SourceMap& map) {
         require(variant.exemplar >= 0 && std::size_t(variant.exemplar) < map.exemplars.size() &&
                     length(variant.rotation) <= 100 && variant.scale >= 0.2 && variant.scale <= 5,
                 "has a bad variant");
-        // What holds a rotated and scaled box is no longer than its diagonal.
+        // The box of a rotated and scaled box is no longer than the diagonal.
         const Index3 from = map.exemplars[std::size_t(variant.exemplar)].box.size();
         const double most = length(Vec3d{double(from.x), double(from.y), double(from.z)}) * 5 + 1;
         for (int axis = 0; axis < 3; ++axis)
@@ -120,7 +121,7 @@ void requireAll(const SourceMap& map) {
     else
         requireSoundPatches(map);
     if (map.method == MapMethod::Analogy) {
-        require(!map.analogy.depths.empty(), "does not say which depths are full");
+        require(!map.analogy.depths.empty(), "does not record which depths are complete");
         return;
     }
     require(map.targetBox.contains(map.targetDomain), "has a domain that lies outside its box");
@@ -144,17 +145,16 @@ std::vector<Source> votingSources(const SourceMap& map, const Index3& voxel) {
     const Index3 local = voxel - map.targetBox.min, strongest = strongestBlock(map.patches, local);
     if (map.patches.vote == PatchVote::First) return {sourceOf(map, strongest, voxel)};
     const float least = blockWeight(map.patches, strongest, local) / 100;
-    int first[3], last[3];
-    for (int axis = 0; axis < 3; ++axis) map.patches.covering(axis, local[axis], first[axis], last[axis]);
+    IndexBox over;
+    for (int axis = 0; axis < 3; ++axis)
+        map.patches.covering(axis, local[axis], over.min[axis], over.max[axis]);
     std::vector<Source> sources;
-    for (int a = first[0]; a <= last[0]; ++a)
-        for (int b = first[1]; b <= last[1]; ++b)
-            for (int c = first[2]; c <= last[2]; ++c) {
-                const float weight = blockWeight(map.patches, {a, b, c}, local);
-                if (weight < least) continue;
-                sources.push_back(sourceOf(map, {a, b, c}, voxel));
-                sources.back().weight = weight;
-            }
+    forEachVoxel(over, [&](const Index3& block) {
+        const float weight = blockWeight(map.patches, block, local);
+        if (weight < least) return;
+        sources.push_back(sourceOf(map, block, voxel));
+        sources.back().weight = weight;
+    });
     return sources;
 }
 
@@ -171,8 +171,8 @@ Index3 coarserVoxel(const Index3& voxel, int factor) {
 Source finerSource(const SourceMap& map, std::size_t element, const Index3& voxel) {
     Source source = *map.elements.strongest(element);
     const Index3 middle = map.elements.voxels()[element] * map.finer, by = voxel - middle;
-    const Vec3d moved =
-        transformed(turnBy(-cast<double>(source.rotation)), {double(by.x), double(by.y), double(by.z)});
+    const Vec3d moved = transformed(rotationMatrix(-cast<double>(source.rotation)),
+                                    {double(by.x), double(by.y), double(by.z)});
     source.position = source.position * double(map.finer) + moved * (1 / double(source.scale));
     return source;
 }
@@ -194,9 +194,9 @@ SourceMap finerMap(const SourceMap& map, int factor) {
     for (const ExemplarVariant& variant : map.variants)
         beyond = beyond || reaches(IndexBox::fromSize(variant.size), farthest);
     if (beyond)
-        throw Error(ErrorCode::ShapeMismatch, "the source map at " + std::to_string(factor) +
-                                                  " times its resolution has coordinates beyond 2^30; use "
-                                                  "exemplars of larger voxels");
+        throw Error(ErrorCode::ShapeMismatch,
+                    "the source map at " + std::to_string(factor) +
+                        " times its resolution has coordinates beyond 2^30; use exemplars of larger voxels");
     for (MappedExemplar& exemplar : scaled.exemplars) exemplar.box = finerBox(exemplar.box, factor);
     for (ExemplarVariant& variant : scaled.variants) variant.size = variant.size * factor;
     scaled.targetBox = finerBox(map.targetBox, factor);
@@ -207,7 +207,7 @@ SourceMap finerMap(const SourceMap& map, int factor) {
     else
         scaled.patches = map.patches.scaled(factor, scaled.targetBox.size());
     scaled.matched = map.matched * factor;
-    scaled.draft = false;  // what the finer exemplar is for
+    scaled.draft = false;  // the finer exemplar gives the full resolution
     return scaled;
 }
 

@@ -11,7 +11,7 @@ using Affine = std::array<double, 16>;
 
 inline constexpr Affine kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
-/// The map that does b, then a.
+/// The composition: b, then a.
 inline Affine multiplied(const Affine& a, const Affine& b) {
     Affine result{};
     for (std::size_t c = 0; c < 4; ++c)
@@ -20,7 +20,7 @@ inline Affine multiplied(const Affine& a, const Affine& b) {
     return result;
 }
 
-/// The turn by a unit quaternion.
+/// The rotation by a unit quaternion.
 inline Affine rotation(double x, double y, double z, double w) {
     Affine m = kIdentity;
     m[0] = 1 - 2 * (y * y + z * z);
@@ -35,7 +35,7 @@ inline Affine rotation(double x, double y, double z, double w) {
     return m;
 }
 
-/// By how much volumes grow; negative where the map mirrors.
+/// The factor by which volumes grow; negative for reflections.
 inline double determinant(const Affine& m) {
     return m[0] * (m[5] * m[10] - m[9] * m[6]) - m[4] * (m[1] * m[10] - m[9] * m[2]) +
            m[8] * (m[1] * m[6] - m[5] * m[2]);

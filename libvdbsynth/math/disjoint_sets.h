@@ -5,14 +5,14 @@
 
 namespace vdbsynth {
 
-/// Sets of numbered elements that are joined step by step [tarjan1975], path halving, the lowest number as
-/// root.
+/// Sets of numbered elements that are merged step by step [tarjan1975], with path halving and the lowest
+/// number as root.
 class DisjointSets {
 public:
     explicit DisjointSets(std::size_t count = 0) {
         for (std::size_t i = 0; i < count; ++i) add();
     }
-    /// One more element, alone in its set.
+    /// Adds one element, alone in its set.
     void add() { mParents.push_back(std::uint32_t(mParents.size())); }
     /// The lowest element of i's set.
     std::uint32_t root(std::uint32_t i) {

@@ -19,7 +19,7 @@ AffineMap fitAffine(const std::vector<float>& vectors, std::size_t length, const
     const double middle = wanted.cast<double>().sum() / count;
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
     Eigen::VectorXd with = Eigen::VectorXd::Zero(n);
-    // A part of the rows at a time in double, or they would take three times their memory.
+    // Converts a part of the rows at a time to double; all of them would take three times their memory.
     constexpr Eigen::Index kPart = 4096;
     for (Eigen::Index first = 0; first < rows; first += kPart) {
         const Eigen::Index part = std::min(kPart, rows - first);

@@ -16,12 +16,11 @@ struct AffineMap {
     }
 };
 
-/// The affine map that misses values least, in the sum of squares, by the normal equations; sums in double
-/// and in a fixed order.
+/// The affine map with the least sum of squared errors, by the normal equations; sums in
+/// double and in a fixed order.
 /// @param vectors  [rows x length]    @param values  [rows]
-/// @param ridge    added to the covariance's diagonal, in shares of its mean; keeps what rows do not
-/// determine
-///                 small. Above 0
+/// @param ridge    added to the covariance's diagonal, as a share of its mean; keeps undetermined weights
+/// small. Above 0
 /// @par Cost    O(rows * length^2 + length^3)    @par Repeats yes
 AffineMap fitAffine(const std::vector<float>& vectors, std::size_t length, const std::vector<float>& values,
                     double ridge = 1e-9);

@@ -6,7 +6,7 @@
 
 namespace vdbsynth {
 
-// What kissfft does with its numbers besides adding and multiplying: to make roots of unity, once.
+// The operations that kissfft needs besides adding and multiplying: to compute roots of unity, once.
 static Lanes cos(const Lanes& angle) {
     return {cosine(double(angle))};
 }

@@ -6,8 +6,8 @@
 
 namespace vdbsynth {
 
-/// Four numbers side by side, of four lines that are transformed at the same time. Compilers keep it in one
-/// vector register, which is what makes the transform fast: its steps are the same for every line.
+/// Four numbers in parallel, from four lines that are transformed at the same time. Compilers keep them in
+/// one vector register, which makes the transform fast: its steps are the same for every line.
 struct Lanes {
     static constexpr int kCount = 4;
     typedef float Vector __attribute__((vector_size(4 * kCount)));
@@ -17,7 +17,7 @@ struct Lanes {
     Lanes() = default;
     Lanes(double all) : values(Vector{} + float(all)) {}
     explicit Lanes(Vector of) : values(of) {}
-    /// The first of them; the transform's own constants are the same in all.
+    /// The first of them; the transform's own constants are equal in all.
     operator double() const { return double(values[0]); }
 
     Lanes& operator+=(const Lanes& b) { return values += b.values, *this; }
@@ -39,12 +39,12 @@ inline Lanes operator*(const Lanes& a, const Lanes& b) {
 
 using ComplexLanes = std::complex<Lanes>;
 
-/// Discrete Fourier transforms of four lines of complex numbers at once: the door to the FFT (kissfft, whose
-/// template takes any type of number, here four of them).
+/// Discrete Fourier transforms of four complex lines at once, by kissfft, whose template takes any number
+/// type, here four numbers.
 ///     out[k] = sum over i of in[i] e^(-2 pi sqrt(-1) i k / length), not divided by the length
 class LineTransform {
 public:
-    /// @param length  at least 1; fast where transformLength gives it back
+    /// @param length  at least 1; fast if transformLength returns it unchanged
     explicit LineTransform(int length);
     LineTransform(LineTransform&&) noexcept;
     LineTransform& operator=(LineTransform&&) noexcept;
@@ -61,12 +61,12 @@ private:
     std::unique_ptr<Impl> mImpl;
 };
 
-/// The least length that is not under `atLeast` and has no prime factor over 5.
+/// The smallest length of at least `atLeast` without a prime factor over 5.
 int transformLength(int atLeast);
 
-/// By how much a transform of `samples` numbers (of all axes together) may be off through rounding, as a
-/// share of its result's 2-norm [higham2002, Theorem 24.2]: the bound for each factor of two, times their
-/// number. Roots of unity are off by 7e-7 at most, which is most of it.
+/// Bound of the rounding error of a transform of `samples` numbers (of all axes together), as a share of its
+/// result's 2-norm [higham2002, Theorem 24.2]: the bound for each factor of two, times their number. Errors
+/// of roots of unity, at most 7e-7, are most of it.
 double transformRounding(double samples);
 
 }  // namespace vdbsynth

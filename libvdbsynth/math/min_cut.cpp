@@ -2,7 +2,7 @@
 
 #include "libvdbsynth/base/error.h"
 
-// Boost reads an iterator before it is set, as compilers see it.
+// To compilers, Boost seems to read an iterator before it is set.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #include <boost/graph/boykov_kolmogorov_max_flow.hpp>
@@ -17,7 +17,7 @@ using Graph = boost::compressed_sparse_row_graph<boost::directedS, boost::no_pro
                                                  boost::no_property, std::uint32_t, std::uint32_t>;
 using GraphEdge = boost::graph_traits<Graph>::edge_descriptor;
 
-// Every connection as two arcs, each the other's way back, by the node that they leave.
+// Every connection as two arcs, each the reverse of the other, sorted by source node.
 class Network {
 public:
     explicit Network(std::uint32_t nodes) : mNodes(nodes) {}
@@ -27,7 +27,7 @@ public:
         mArcs.push_back({to, from, 0, mArcs.size() - 1});
     }
 
-    // 1 for nodes that still reach the sink when all that can has flowed.
+    // 1 for nodes that still reach the sink at maximum flow.
     std::vector<std::uint8_t> reachingSink(std::uint32_t source, std::uint32_t sink) const {
         std::vector<std::size_t> order(mArcs.size());
         std::vector<std::uint32_t> begin(std::size_t(mNodes) + 1, 0);
@@ -82,8 +82,9 @@ std::vector<std::uint8_t> leastCostAnswers(const CutProblem& problem) {
     const std::uint32_t nodes = std::uint32_t(problem.yes.size()), source = nodes, sink = nodes + 1;
     for (const CutProblem::Edge& edge : problem.edges)
         if (edge.from >= nodes || edge.to >= nodes || edge.cost < 0)
-            throw Error(ErrorCode::InvalidOption, "an edge of a minimum cut names no node or costs under 0");
-    // Where no node alone is cheaper as a yes, none together are.
+            throw Error(ErrorCode::InvalidOption,
+                        "a minimum-cut edge has an invalid node or a negative cost");
+    // If no single node is cheaper as a yes, no set of nodes is.
     if (std::none_of(problem.yes.begin(), problem.yes.end(), [](std::int64_t y) { return y < 0; })) return {};
     Network network(nodes + 2);
     for (std::uint32_t i = 0; i < nodes; ++i) {

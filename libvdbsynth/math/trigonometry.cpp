@@ -8,7 +8,7 @@
 namespace vdbsynth {
 namespace {
 
-// Taylor series on [-pi/4, pi/4]; the first term left out is below 1e-17 there.
+// Taylor series on [-pi/4, pi/4]; the first omitted term is below 1e-17 there.
 double sineSeries(double x) noexcept {
     const double s = x * x;
     return x * (1 + s * (-1.0 / 6 +
@@ -76,7 +76,8 @@ double exponential(double power) noexcept {
     if (std::isnan(power)) return power;
     if (power > 709.79) return std::numeric_limits<double>::infinity();
     if (power < -745.2) return 0;
-    // power = n ln 2 + rest; ln 2 in two parts, the first with zeros enough for n times it to be exact.
+    // power = n ln 2 + rest; ln 2 in two parts, the first with enough trailing
+    // zeros that n times it is exact.
     const double n = std::floor(power * 1.4426950408889634 + 0.5);
     const double r = (power - n * 0.693147180369123816490) - n * 1.90821492927058770002e-10;
     const double sum =

@@ -4,12 +4,12 @@ namespace vdbsynth {
 
 inline constexpr double kPi = 3.14159265358979323846;
 
-/// Functions of the C library that give the same bits on every x86-64 processor: the library picks other
-/// code, with another last bit, where the processor has fused multiply-add. Those that round exactly (sqrt,
-/// floor, fmod, ldexp) need no other.
+/// Replacements for functions of the C library that give the same bits on every x86-64 processor: the library
+/// switches to other code, with another last bit, on processors with fused multiply-add. Functions that round
+/// exactly (sqrt, floor, fmod, ldexp) need no replacement.
 
-/// @param angle  [radians], |angle| under 1e4; absolute error below 1e-12 there, below 1e-15 for |angle|
-/// under 7
+/// @param angle  [radians], |angle| under 1e4; absolute error below 1e-12 there,
+/// below 1e-15 for |angle| under 7
 double sine(double angle) noexcept;
 double cosine(double angle) noexcept;
 
@@ -17,8 +17,8 @@ double cosine(double angle) noexcept;
 /// x whatever the sign of that zero. Absolute error below 1e-15.
 double arcTangent(double y, double x) noexcept;
 
-/// e to the power, infinite over 709.78, 0 below -745.13. Relative error below 1e-15 where the result is over
-/// 1e-307.
+/// e to the power, infinite over 709.78, 0 below -745.13. Relative error below 1e-15 if
+/// the result is over 1e-307.
 double exponential(double power) noexcept;
 
 /// Logarithm to base 2, exact for powers of two. @param number  over 0, finite. Absolute error below 1e-15 +

@@ -3,7 +3,7 @@
 
 namespace vdbsynth {
 
-/// A point or direction in three dimensions; plain data so that every room can pass it on.
+/// A point or direction in three dimensions; plain data for all rooms.
 template <typename T>
 struct Vec3 {
     T x = 0, y = 0, z = 0;

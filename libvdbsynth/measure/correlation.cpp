@@ -1,6 +1,7 @@
 #include "libvdbsynth/measure/correlation.h"
 
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/math/trigonometry.h"
 #include "libvdbsynth/math/vec3.h"
 
@@ -17,42 +18,41 @@ bool inShell(const Index3& p, int r) {
     return std::lround(std::sqrt(double(p.x) * p.x + double(p.y) * p.y + double(p.z) * p.z)) == r;
 }
 
-// Of p and -p the one that stands for both.
+// The one of p and -p that represents both.
 bool upper(const Index3& p) {
     return p.z > 0 || (p.z == 0 && (p.y > 0 || (p.y == 0 && p.x >= 0)));
 }
 
-// The lattice point of the shell that is nearest to p, a point of length r: simple rounding can leave the
-// shell, by less than a step.
+// The lattice point of the shell nearest to p, a point of length r: simple rounding can leave the shell by
+// less than a step.
 Index3 nearestInShell(int r, const Vec3d& p) {
     Index3 nearest;
     double best = -1;
-    for (int n = 0; n < 27; ++n) {
-        const Index3 q{int(std::lround(p.x)) + n / 9 - 1, int(std::lround(p.y)) + n / 3 % 3 - 1,
-                       int(std::lround(p.z)) + n % 3 - 1};
-        if (!inShell(q, r)) continue;
+    const Index3 rounded{int(std::lround(p.x)), int(std::lround(p.y)), int(std::lround(p.z))};
+    forEachVoxel(IndexBox{rounded, rounded}.expanded(1), [&](const Index3& q) {
+        if (!inShell(q, r)) return;
         const Vec3d d = p - Vec3d{double(q.x), double(q.y), double(q.z)};
         if (best < 0 || dot(d, d) < best) {
             nearest = q;
             best = dot(d, d);
         }
-    }
+    });
     return upper(nearest) ? nearest : nearest * -1;
 }
 
 }  // namespace
 
 std::vector<Index3> radialShifts(int r) {
-    // From this radius on there are far more than that.
+    // From this radius on there are far more.
     constexpr int kCrowded = 5;
     std::vector<Index3> all;
-    for (int x = -r; r < kCrowded && x <= r; ++x)
-        for (int y = -r; y <= r; ++y)
-            for (int z = 0; z <= r; ++z) {
-                if (upper({x, y, z}) && inShell({x, y, z}, r)) all.push_back({x, y, z});
-            }
+    if (r < kCrowded)
+        forEachVoxel({{-r, -r, 0}, {r, r, r}}, [&](const Index3& p) {
+            if (upper(p) && inShell(p, r)) all.push_back(p);
+        });
     if (r < kCrowded && all.size() <= kDirections) return all;
-    // A Fibonacci spiral on the half sphere; each point goes to its lattice point, which may be shared.
+    // A Fibonacci spiral on the half sphere; each point maps to its nearest lattice
+    // point, which may be shared.
     std::set<Index3> chosen;
     const double golden = kPi * (3 - std::sqrt(5.0));
     for (std::size_t i = 0; i < kDirections; ++i) {
@@ -150,7 +150,7 @@ LineStatistics lineStatistics(const Occupancy& solid, int axis, int reach) {
                 // Changes from void to solid and from solid to void, half a chord each.
                 beginnings += (begin > 0 ? 0.5 : 0) + (end < n ? 0.5 : 0);
                 if (begin > 0 && end < n) {
-                    // Of the places where it could lie in an endless line, n - 1 - length show it whole.
+                    // Of its positions in an endless line, n - 1 - length contain it whole.
                     const double weight = 1.0 / (n - 1 - length);
                     chords[std::size_t(std::min(length, reach))] += weight;
                     whole += weight;
@@ -164,7 +164,7 @@ LineStatistics lineStatistics(const Occupancy& solid, int axis, int reach) {
     result.chords = chords;
     if (whole > 0)
         for (double& share : result.chords) share /= whole;
-    // Changes are seen between n - 1 pairs of n voxels.
+    // Changes are observed between n - 1 pairs of n voxels.
     if (beginnings > 0) result.meanChord = voxels / n / (beginnings / std::max(1, n - 1));
     return result;
 }

@@ -1,6 +1,7 @@
 #include "libvdbsynth/measure/functionals.h"
 
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/math/trigonometry.h"
 
 #include <algorithm>
@@ -11,15 +12,15 @@
 namespace vdbsynth {
 namespace {
 
-// Eighths of Euler characteristic that a corner of the lattice brings in, by which of the eight voxels
-// around it are solid. Voxel v lies at (v >> 2 & 1, v >> 1 & 1, v & 1).
+// Eighths of Euler characteristic contributed by a corner of the lattice, indexed by which of the eight
+// voxels around it are solid. Voxel v is at (v >> 2 & 1, v >> 1 & 1, v & 1).
 std::array<int, 256> eulerTable() {
     std::array<int, 256> table{};
     for (int solid = 1; solid < 256; ++solid) {
         int eighths = 8;  // the corner itself
         for (int axis = 0; axis < 3; ++axis)
             for (int side = 0; side < 2; ++side) {
-                bool edge = false;  // the edge along `axis` to that side touches four voxels
+                bool edge = false;  // the edge along `axis` on that side touches four voxels
                 for (int v = 0; v < 8; ++v) edge = edge || ((v >> axis & 1) == side && (solid >> v & 1));
                 eighths -= edge ? 4 : 0;
             }
@@ -56,7 +57,7 @@ std::int64_t sumRow(const std::array<int, 256>& table, const std::uint64_t* cons
     std::int64_t sum = 0;
     int before = solidAt(first - 1);
     for (int z = first; z <= last; ++z) {
-        // A whole word of one kind after the same kind adds nothing: the table is 0 for all and for none.
+        // A word of one phase after the same phase adds nothing: the table is 0 for all and for none.
         if ((z & 63) == 0 && z + 64 <= std::min(sizeZ, last + 1)) {
             const std::size_t word = std::size_t(z) >> 6;
             if ((before == 0 && uniform(rows, word, 0)) || (before == 85 && uniform(rows, word, ~0ull))) {
@@ -116,15 +117,15 @@ Sides sidesByEdge(const std::vector<Triangle>& faces, std::size_t vertices) {
     return sides;
 }
 
-// The angle by which the normal turns from face a to face b at their edge, positive where convex.
-double turn(const Mesh& mesh, const std::vector<Triangle>& faces, const Side& a, const Side& b) {
+// The angle between the normals of faces a and b at their edge, positive if convex.
+double normalAngle(const Mesh& mesh, const std::vector<Triangle>& faces, const Side& a, const Side& b) {
     const auto normal = [&](const Triangle& t) {
         return cross(corner(mesh, t[1]) - corner(mesh, t[0]), corner(mesh, t[2]) - corner(mesh, t[0]));
     };
     const Vec3d na = normal(faces[a.face]), nb = normal(faces[b.face]);
     if (dot(na, na) == 0 || dot(nb, nb) == 0) return 0;
     const double angle = arcTangent(length(cross(na, nb)), dot(na, nb));
-    // Convex where the far corner of b lies behind a.
+    // Convex if the far corner of b is behind a.
     const Triangle& t = faces[b.face];
     std::uint32_t far = t[0];
     for (std::uint32_t v : t)
@@ -135,7 +136,7 @@ double turn(const Mesh& mesh, const std::vector<Triangle>& faces, const Side& a,
 using Element = SurfaceElements::Element;
 using ByCell = SurfaceElements::ByCell;
 
-// What the edges from one vertex bring in; edges of other than two faces do not.
+// Contribution of the edges from one vertex; edges with other than two faces give none.
 void addCurvatures(const Mesh& mesh, const std::vector<Triangle>& faces, Side* begin, Side* end,
                    std::vector<Element>& elements) {
     std::sort(begin, end, [](const Side& a, const Side& b) {
@@ -146,14 +147,14 @@ void addCurvatures(const Mesh& mesh, const std::vector<Triangle>& faces, Side* b
         while (next < end && next->high == side->high) ++next;
         if (next - side == 2) {
             const Vec3d a = corner(mesh, side->low), b = corner(mesh, side->high);
-            const float share = float(length(b - a) * turn(mesh, faces, side[0], side[1]) / 2);
+            const float share = float(length(b - a) * normalAngle(mesh, faces, side[0], side[1]) / 2);
             if (share != 0) elements.push_back({cast<float>((a + b) * 0.5), share});
         }
         side = next;
     }
 }
 
-// The cell of the voxel whose half-voxel surroundings hold p, as in holds().
+// The cell of the voxel whose half-voxel surroundings contain p, as in holds().
 Index3 cellOf(const Vec3f& p) {
     Index3 cell;
     for (int axis = 0; axis < 3; ++axis) cell[axis] = int(std::floor((double(p[axis]) + 0.5) / kElementCell));
@@ -161,12 +162,10 @@ Index3 cellOf(const Vec3f& p) {
 }
 
 std::size_t cellNumber(const IndexBox& cells, const Index3& cell) {
-    const Index3 at = cell - cells.min, size = cells.size();
-    return (std::size_t(at.x) * std::size_t(size.y) + std::size_t(at.y)) * std::size_t(size.z) +
-           std::size_t(at.z);
+    return latticeIndex(cell - cells.min, cells.size());
 }
 
-// Elements as they are found, a list for each fixed share of the work.
+// Elements in the order found, one list for each fixed share of the work.
 using Lists = std::vector<std::vector<Element>>;
 constexpr std::size_t kShare = 8192;  // faces or vertices
 

@@ -1,7 +1,7 @@
 #pragma once
 #include "libvdbsynth/geometry/mesh.h"
+#include "libvdbsynth/grid/occupancy.h"
 #include "libvdbsynth/math/index_box.h"
-#include "libvdbsynth/measure/occupancy.h"
 
 #include <cstddef>
 #include <vector>
@@ -11,23 +11,23 @@ namespace vdbsynth {
 // The Minkowski functionals: volume (Occupancy::count), area, integrated mean curvature, Euler
 // characteristic [ohser2009, chapter 3].
 
-/// What lies beyond a box of voxels.
+/// What is assumed beyond a box of voxels.
 enum class Beyond {
-    Unknown,  ///< the texture goes on there: only what is decided inside the box counts
+    Unknown,  ///< the texture continues there: only what is decided inside the box is counted
     Void      ///< nothing: the box holds a whole object
 };
 
-/// Euler characteristic of the solid, its voxels taken for closed cubes (neighbours by faces, edges and
-/// corners belong together, those of the void by faces only): corners - edges + faces - cubes. Each corner of
-/// the voxel lattice brings in its shares, an edge half, a face a quarter, a cube an eighth of it. With
+/// Euler characteristic of the solid, its voxels as closed cubes (solid neighbours are connected by faces,
+/// edges and corners, those of the void by faces only): corners - edges + faces - cubes. Each corner of the
+/// voxel lattice contributes its shares: half of an edge, a quarter of a face, an eighth of a cube. With
 /// Beyond::Unknown only the corners inside the box are summed, so that the mean over many boxes, divided by
 /// `eulerVolume`, is the density without bias.
 double eulerCharacteristic(const Occupancy& solid, Beyond beyond);
-/// Number of voxel corners that eulerCharacteristic summed over: what to divide by for a density.
+/// Number of voxel corners that eulerCharacteristic summed over: the divisor for a density.
 double eulerVolume(const Index3& size, Beyond beyond);
 
-/// A surface as what its parts bring in, each at its middle; by cells of kElementCell^3 voxels, so that a box
-/// asks those near it only.
+/// A surface as the contributions of its parts, each at its middle; by cells of kElementCell^3 voxels, so
+/// that a box reads only nearby ones.
 inline constexpr int kElementCell = 16;
 struct SurfaceElements {
     struct Element {
@@ -40,10 +40,10 @@ struct SurfaceElements {
         std::vector<std::size_t> first;  ///< [cells + 1, x slowest] where each cell's begin
     };
     ByCell areas;       ///< [triangles] area
-    ByCell curvatures;  ///< [edges] length times half the angle by which the normal turns there
+    ByCell curvatures;  ///< [edges] length times half the angle between the normals there
 };
 
-/// @param mesh  closed, faces outward; edges of other than two faces bring in no curvature
+/// @param mesh  closed, faces outward; edges with other than two faces contribute no curvature
 /// @par Cost    O(faces)   @par Repeats same bits for any number of threads
 SurfaceElements surfaceElements(const Mesh& mesh, const RunContext& ctx = {});
 
@@ -53,8 +53,8 @@ struct SurfaceFunctionals {
 };
 
 /// Area and integrated mean curvature in a box, the latter as the sum over edges of length times half the
-/// turn [cohensteiner2003, section 3].
-/// @param box  in voxel coordinates; it holds what lies within half a voxel around its voxels' centres
+/// angle between the normals [cohensteiner2003, section 3].
+/// @param box  in voxel coordinates; includes half a voxel around its voxels' centres
 /// @par Cost    O(elements within a cell of the box)   @par Repeats yes
 SurfaceFunctionals surfaceFunctionals(const SurfaceElements& elements, const IndexBox& box);
 

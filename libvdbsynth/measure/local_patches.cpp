@@ -1,7 +1,8 @@
 // LP-IoU and LP-F on bits: a patch is 21 words, a pair costs 21 ands and counts.
+#include "libvdbsynth/measure/local_patches.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/base/random.h"
-#include "libvdbsynth/measure/patch_distribution.h"
+#include "libvdbsynth/math/lattice.h"
 
 #include <algorithm>
 #include <array>
@@ -19,26 +20,25 @@ struct BitPatch {
     int count = 0;
 };
 
-bool solidAt(const Occupancy& solid, int x, int y, int z) {
-    const Index3& size = solid.size();
-    return x >= 0 && y >= 0 && z >= 0 && x < size.x && y < size.y && z < size.z && solid.at(x, y, z);
+bool solidAt(const Occupancy& solid, const Index3& p) {
+    return IndexBox::fromSize(solid.size()).contains(p) && solid.at(p.x, p.y, p.z);
 }
 
-// The patch with its corner there; false where its middle 3^3 is all of one kind.
+// The patch with that corner; false if its middle 3^3 is all of one phase.
 bool takePatch(const Occupancy& solid, const Index3& corner, BitPatch& patch) {
     int middle = 0;
-    for (int i = 0; i < 27; ++i)
-        middle += solidAt(solid, corner.x + 4 + i / 9, corner.y + 4 + i / 3 % 3, corner.z + 4 + i % 3);
+    forEachVoxel(IndexBox::cube(corner + Index3{4, 4, 4}, 3),
+                 [&](const Index3& p) { middle += solidAt(solid, p); });
     if (middle == 0 || middle == 27) return false;
     patch = {};
     std::size_t bit = 0;
-    for (int x = 0; x < kSide; ++x)
-        for (int y = 0; y < kSide; ++y)
-            for (int z = 0; z < kSide; ++z, ++bit)
-                if (solidAt(solid, corner.x + x, corner.y + y, corner.z + z)) {
-                    patch.bits[bit / 64] |= std::uint64_t(1) << (bit % 64);
-                    ++patch.count;
-                }
+    forEachVoxel(IndexBox::cube(corner, kSide), [&](const Index3& p) {
+        if (solidAt(solid, p)) {
+            patch.bits[bit / 64] |= std::uint64_t(1) << (bit % 64);
+            ++patch.count;
+        }
+        ++bit;
+    });
     return true;
 }
 

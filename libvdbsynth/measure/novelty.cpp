@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/math/disjoint_sets.h"
+#include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/measure/patch_distribution.h"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace {
 constexpr int kStride = 4;
 constexpr std::size_t kPatches = 6000;
 constexpr std::size_t kPlaces = 60000;
-constexpr double kNearCost = 0.25;         // [voxels^2] what may turn out a copy when followed downhill
+constexpr double kNearCost = 0.25;         // [voxels^2] below this, a descent may reach a copy
 constexpr double kCopyCost = 0.25 * 0.25;  // [voxels^2]
 
 bool earlier(const SourcedVoxel& a, const SourcedVoxel& b) {
@@ -72,7 +73,7 @@ int chebyshev(const Index3& a, const Index3& b) {
     return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
 }
 
-// Leaves at most about kPatches of the places, those nearest to the one that is nearest to the middle of all.
+// Keeps at most about kPatches of the positions, those nearest to the one nearest to the common middle.
 void keepCompact(std::vector<Index3>& places) {
     if (places.size() <= kPatches) return;
     Vec3d sum{0, 0, 0};
@@ -91,7 +92,7 @@ void keepCompact(std::vector<Index3>& places) {
                  places.end());
 }
 
-// The box that the patches at these places fill.
+// The box covered by the patches at these positions.
 IndexBox boxOf(const std::vector<Index3>& places) {
     if (places.empty()) return {};
     IndexBox box{places.front(), places.front()};
@@ -103,8 +104,8 @@ IndexBox boxOf(const std::vector<Index3>& places) {
     return box;
 }
 
-// Where a neighbour's source goes on here as a copy too, that is the source: a repeating texture has many
-// equal places, and a run ends only where it must.
+// If continuing a neighbour's source gives a copy here too, that is the source: a repeating texture has many
+// equal positions, and runs should not end without need.
 void followNeighbours(const PatchScale& of, const PatchScale& in, PatchMatches& matches) {
     std::map<Index3, std::size_t> numbers;
     for (std::size_t i = 0; i < matches.from.size(); ++i) numbers[matches.from[i]] = i;
@@ -143,7 +144,7 @@ Novelty measureNovelty(std::vector<SourcedVoxel> voxels, std::size_t looked, con
     for (std::size_t i = 0; i < voxels.size(); ++i) gradients[i] = gradientAt(result, voxels[i].place);
     Jumps seams, inner;
     for (int axis = 0; axis < 3; ++axis) {
-        // Neighbours of places in order are in order too, so one pass finds them all.
+        // Neighbours of sorted positions are sorted too, so one pass finds them all.
         std::size_t next = 0;
         for (std::size_t i = 0; i < voxels.size(); ++i) {
             SourcedVoxel neighbour;
@@ -218,14 +219,12 @@ MatchedSources sourcesByMatching(std::shared_ptr<const BrickField> result, const
     followNeighbours(queries, in.scales.front(), matches);
     const int margin = (kPatchSide - kStride) / 2;
     for (std::size_t i = 0; i < matches.from.size(); ++i)
-        for (int n = 0; n < kStride * kStride * kStride; ++n) {
-            const Index3 at{margin + n / (kStride * kStride), margin + n / kStride % kStride,
-                            margin + n % kStride};
+        forEachVoxel(IndexBox::cube({margin, margin, margin}, kStride), [&](const Index3& at) {
             const Index3 place = matches.from[i] + at;
-            if (std::abs(result->inside(place)) >= kNearSurface) continue;
+            if (std::abs(result->inside(place)) >= kNearSurface) return;
             ++found.looked;
             if (matches.costs[i] < kCopyCost) found.voxels.push_back({place, matches.to[i] + at, 0});
-        }
+        });
     return found;
 }
 

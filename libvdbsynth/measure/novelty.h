@@ -9,20 +9,20 @@
 
 namespace vdbsynth {
 
-inline constexpr float kNearSurface = 1.5f;  ///< [voxels] that "near the surface" means
+inline constexpr float kNearSurface = 1.5f;  ///< [voxels] limit of "near the surface"
 
-/// Where a voxel near a result's surface came from.
+/// The source of a voxel near a result's surface.
 struct SourcedVoxel {
     Index3 place;   ///< in the result
     Index3 source;  ///< in its exemplar
     std::int32_t exemplar = 0;
 };
 
-/// @param voxels       those that have a source, any order, no place twice
-/// @param looked       number of voxels looked at, with or without a source
+/// @param voxels       those with a source, in any order, without duplicates
+/// @param looked       number of voxels considered, with or without a source
 /// @param result       [voxels] the result's field, for gradients
 /// @param exemplar     [voxels]
-/// @param exemplarBox  within the exemplar's: only voxels in it and within kNearSurface can be used
+/// @param exemplarBox  within the exemplar's: only its voxels within kNearSurface can be used
 /// @par Cost    O(voxels log voxels + exemplar's voxels)   @par Repeats same bits for any number of threads
 Novelty measureNovelty(std::vector<SourcedVoxel> voxels, std::size_t looked, const BrickField& result,
                        const BrickField& exemplar, const IndexBox& exemplarBox, const RunContext& ctx = {});
@@ -37,15 +37,15 @@ std::size_t countNearSurface(const BrickField& field, const IndexBox& box, float
 
 struct MatchedSources {
     std::vector<SourcedVoxel> voxels;  ///< those of patches that are copies
-    std::size_t looked = 0;            ///< voxels near the surface that were looked at
-    IndexBox box;                      ///< looked at
+    std::size_t looked = 0;            ///< voxels near the surface that were considered
+    IndexBox box;                      ///< searched
 };
 
-/// Finds where a result without a map came from: patches of 8^3 on every fourth voxel near its surface are
-/// looked for in the exemplar; one that differs by under a quarter voxel (root mean square) counts as a
-/// copy and gives its source to the 4^3 voxels in its middle that are near the surface. Where there are over
-/// 6000 such patches only those are looked for that are nearest to the one nearest to the middle of all: one
-/// cube of them, so that runs stay whole.
+/// Finds the sources of a result without a map: patches of 8^3 on every fourth voxel near its surface are
+/// searched in the exemplar. One that differs by under a quarter voxel (root mean square) is a copy and
+/// gives its source to the 4^3 voxels in its middle that are near the surface. If there are over 6000
+/// such patches, only those nearest to the one nearest to the common middle are searched: one cube of
+/// them, so that runs stay whole.
 /// @par Repeats same bits for ctx.seed, any number of threads
 MatchedSources sourcesByMatching(std::shared_ptr<const BrickField> result, const IndexBox& box,
                                  std::shared_ptr<const BrickField> exemplar, const IndexBox& exemplarBox,

@@ -1,8 +1,11 @@
 #include "libvdbsynth/measure/patch_distribution.h"
 
+#include "libvdbsynth/grid/occupancy.h"
+
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/base/random.h"
 #include "libvdbsynth/grid/pyramid.h"
+#include "libvdbsynth/math/lattice.h"
 
 #include <algorithm>
 #include <array>
@@ -23,7 +26,8 @@ void readPatch(const BrickField& field, const Index3& corner, Patch& patch) {
     field.readBox(corner, {kPatchSide, kPatchSide, kPatchSide}, patch.data());
 }
 
-// `count` of the elements by lot (the first steps of a shuffle), in the order drawn; all if there are fewer.
+// `count` of the elements sampled at random (the first steps of a shuffle), in the order
+// drawn; all if there are fewer.
 template <typename T>
 std::vector<T> drawn(std::vector<T> all, std::size_t count, std::uint64_t seed, std::uint32_t purpose) {
     if (all.size() <= count) return all;
@@ -35,7 +39,7 @@ std::vector<T> drawn(std::vector<T> all, std::size_t count, std::uint64_t seed, 
     return all;
 }
 
-// A word for each 64 corners of a row along z: set where the patch's middle has both signs.
+// One word for each 64 corners of a row along z: a bit is set if the patch's middle has both signs.
 std::vector<std::uint64_t> mixedMiddles(const Occupancy& solid, int x, int y) {
     const std::size_t words = solid.rowWords();
     std::vector<std::uint64_t> any(words + 1, 0), all(words + 1, ~std::uint64_t(0)), mixed(words);
@@ -79,9 +83,9 @@ std::vector<Index3> placesIn(const BrickField& field, const IndexBox& box, const
     return places;
 }
 
-// What is kept of a patch to bound its cost: means over its 8 octants and its 64 cells of 2^3, and the length
-// of what is left when each level's means are taken away. Squared differences of means, times their samples,
-// plus that of the lengths, is at most the patches'.
+// Data of a patch that bound its cost: means over its 8 octants and its 64 cells of 2^3, and the norm of the
+// residual after each level's means are subtracted. Squared differences of means, times their samples, plus
+// that of the norms, are at most the patches' difference.
 struct Summary {
     std::array<float, 8> octants{};
     std::array<float, 64> cells{};
@@ -110,7 +114,7 @@ Summary summaryOf(const Patch& patch) {
 }
 
 double costOf(const Patch& a, const Patch& b) {
-    // Four sums side by side, in a fixed order.
+    // Four sums in parallel, in a fixed order.
     std::array<float, 4> sums{};
     for (std::size_t i = 0; i < kSamples; i += 4)
         for (std::size_t k = 0; k < 4; ++k) sums[k] += (a[i + k] - b[i + k]) * (a[i + k] - b[i + k]);
@@ -124,7 +128,8 @@ struct Match {
 
 constexpr float kMargin = 0.9999f;  // bounds are rounded; this keeps them below
 
-// Summaries of all places; the coarse level by number first, so that bounds come for many places at once.
+// Summaries of all positions; the coarse level by component first, so that many
+// positions are bounded in parallel.
 struct SummaryTable {
     std::array<std::vector<float>, 8> octants;
     std::vector<float> beyondOctants;
@@ -153,8 +158,8 @@ float closerBound(const Summary& mine, const Summary& other) {
     return ((sums[0] + sums[1] + sums[2] + sums[3]) * (kSamples / 64) + rest * rest) * (kMargin / kSamples);
 }
 
-// The cheapest of the places that cost less than `limit`: the one of the least bound first, then all whose
-// bound is under its cost, in the order of their bounds.
+// The cheapest of the positions that cost less than `limit`: the one with the least bound first, then all
+// whose bound is below its cost, in the order of their bounds.
 Match cheapest(const Patch& query, const PatchScale& to, const SummaryTable& table, double limit,
                std::vector<float>& bounds) {
     const Summary mine = summaryOf(query);
@@ -182,16 +187,16 @@ Match cheapest(const Patch& query, const PatchScale& to, const SummaryTable& tab
     return best;
 }
 
-// Steps to the cheapest neighbouring corner while that is cheaper.
+// Moves to the cheapest neighbouring corner while that is cheaper.
 Match downhill(const Patch& query, const BrickField& field, Match best) {
     const Index3 last = field.box().max - Index3{kPatchSide - 1, kPatchSide - 1, kPatchSide - 1};
     Patch patch;
     for (bool moved = true; moved && best.cost > 0;) {
         moved = false;
         const Index3 centre = best.place;
-        for (int n = 0; n < 27; ++n) {
-            const Index3 p = centre + Index3{n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1};
-            if (p == centre || !IndexBox{field.box().min, last}.contains(p)) continue;
+        for (const Index3& step : kAllNeighbours) {
+            const Index3 p = centre + step;
+            if (!IndexBox{field.box().min, last}.contains(p)) continue;
             readPatch(field, p, patch);
             const double cost = costOf(query, patch);
             if (cost < best.cost) {
@@ -245,7 +250,7 @@ PatchSource patchSource(std::shared_ptr<const BrickField> field, const PatchSour
     for (int scale = 0; scale < options.scales; ++scale) {
         if (scale > 0) {
             field = std::make_shared<const BrickField>(halved(*field, ctx));
-            // Only coarse samples whose voxels all lie within.
+            // Only coarse samples whose voxels are all inside.
             box = {{(box.min.x + 1) >> 1, (box.min.y + 1) >> 1, (box.min.z + 1) >> 1},
                    {(box.max.x - 1) >> 1, (box.max.y - 1) >> 1, (box.max.z - 1) >> 1}};
         }

@@ -2,9 +2,6 @@
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/grid/brick_field.h"
 #include "libvdbsynth/math/index_box.h"
-#include "libvdbsynth/measure/functionals.h"
-#include "libvdbsynth/measure/measures.h"
-#include "libvdbsynth/measure/occupancy.h"
 
 #include <memory>
 #include <vector>
@@ -15,7 +12,7 @@ inline constexpr int kPatchSide = 8;    ///< [samples]
 inline constexpr int kPatchScales = 3;  ///< full, half, a quarter of the resolution
 
 /// Patches of a field near its surface, at three scales: cubes of 8^3 samples whose middle 4^3 has both
-/// signs. The coarser scales are means over 2^3 and 4^3 voxels of the clamped distances, so all values are
+/// signs. The coarser scales are means over 2^3 and 4^3 voxels of the clamped distances, so all values are in
 /// voxels of the finest.
 struct PatchScale {
     std::shared_ptr<const BrickField> field;
@@ -26,8 +23,8 @@ struct PatchSource {
 };
 
 struct PatchSourceOptions {
-    IndexBox box;               ///< [voxels of the field] patches lie within it
-    std::size_t limit = 30000;  ///< most places, a third of it at coarser scales; of more, that many by lot
+    IndexBox box;               ///< [voxels of the field] contains all patches
+    std::size_t limit = 30000;  ///< most positions, sampled at random; a third of it at coarser scales
     int scales = kPatchScales;  ///< 1..kPatchScales
 };
 
@@ -36,7 +33,7 @@ struct PatchSourceOptions {
 PatchSource patchSource(std::shared_ptr<const BrickField> field, const PatchSourceOptions& options,
                         const RunContext& ctx = {});
 
-/// Up to `count` patches of a scale by lot, each projected on the same 128 random directions.
+/// Up to `count` patches of a scale, sampled at random, each projected on the same 128 random directions.
 struct Projections {
     std::vector<Index3> places;              ///< [patches]
     std::vector<std::vector<float>> values;  ///< [128][patches], in the order of places
@@ -44,8 +41,8 @@ struct Projections {
 /// @par Repeats same bits for (scale, count, ctx.seed), any number of threads
 Projections project(const PatchScale& scale, std::size_t count, const RunContext& ctx = {});
 
-/// Those of the patches that lie in a box of the finest scale's voxels, or those that do not.
-/// @param scale  0, 1, 2: which scale they are of
+/// The patches inside a box of the finest scale's voxels, or those outside.
+/// @param scale  0, 1, 2: the scale of the patches
 Projections within(const Projections& all, const IndexBox& box, int scale, bool inside = true);
 
 /// Sliced Wasserstein distance of two sets of patches [elnekave2022, Eq. 3]: the mean over the directions of
@@ -54,29 +51,23 @@ Projections within(const Projections& all, const IndexBox& box, int scale, bool 
 /// @par Repeats same bits for any number of threads
 double slicedWasserstein(const Projections& a, const Projections& b, const RunContext& ctx = {});
 
-/// How much like the patches of `to` those of `from` are: the mean over up to `count` patches of `from` by
-/// lot of the least mean squared difference [voxels^2] to a patch of `to`: coherence of a result with its
-/// exemplar and, with the two exchanged, completeness [simakov2008, Eq. 1]. The least is exact over the
-/// places of `to`; from there it goes on downhill over neighbouring corners, so that a verbatim copy costs 0
-/// though its place was not drawn. A patch whose best costs `limit` or more is given that cost and no place.
+/// Similarity of the patches of `from` to those of `to`: the mean over up to `count` randomly sampled
+/// patches of `from` of the least mean squared difference [voxels^2] to a patch of `to`: coherence of a
+/// result with its exemplar and, with the two exchanged, completeness [simakov2008, Eq. 1]. The least is
+/// exact over the sampled positions of `to`; from there it descends over neighbouring corners, so that a
+/// verbatim copy costs 0 even if its position was not sampled. A patch whose best costs `limit` or more gets
+/// that cost and no position.
 /// @par Repeats same bits for ctx.seed, any number of threads
 struct PatchMatches {
     double mean = 0;            ///< [voxels^2]
-    std::vector<Index3> from;   ///< [matches] corners, the order of the lot
+    std::vector<Index3> from;   ///< [matches] corners, in the order sampled
     std::vector<Index3> to;     ///< [matches]
     std::vector<double> costs;  ///< [matches] mean squared difference
 };
 PatchMatches matchPatches(const PatchScale& from, const PatchScale& to, std::size_t count, double limit,
                           const RunContext& ctx = {});
 
-/// Mean squared difference of two patches by their corners.
+/// Mean squared difference of two patches, by their corners.
 double patchCost(const BrickField& a, const Index3& cornerA, const BrickField& b, const Index3& cornerB);
-
-struct PatchBits {
-    Occupancy solid;
-    Beyond beyond = Beyond::Void;
-};
-LocalPatches localPatchSimilarity(const PatchBits& reference, const PatchBits& other,
-                                  const RunContext& ctx = {});
 
 }  // namespace vdbsynth

@@ -1,5 +1,7 @@
 #include "libvdbsynth/measure/statistics.h"
 
+#include "libvdbsynth/grid/components.h"
+
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/measure/correlation.h"
 
@@ -14,7 +16,7 @@ Statistic number(const char* name, int power, double value) {
     return {name, power, false, {value}};
 }
 
-// A density; 0 where a box is too thin to hold any of what it is counted in.
+// A density; 0 if a box is too thin to contain any of its units.
 double per(double total, double volume) {
     return volume > 0 ? total / volume : 0;
 }
@@ -23,20 +25,20 @@ void append(std::vector<double>& to, const std::vector<double>& from) {
     to.insert(to.end(), from.begin(), from.end());
 }
 
-// Running sums: distributions are compared as such, since a peak one voxel aside is near, not elsewhere.
+// Running sums: distributions are compared cumulatively, so that a peak one voxel aside is close.
 void appendSums(std::vector<double>& to, const std::vector<double>& shares) {
     double sum = 0;
     for (double share : shares) to.push_back(sum += share);
 }
 
-// An object is counted whole, and its parts like those of a texture.
+// A whole object is counted in full; its sub-volumes like those of a texture.
 bool isWhole(const MeasuredModel& model, const IndexBox& box) {
     return model.beyond == Beyond::Void && box == model.counted;
 }
 
 void addSurface(const MeasuredModel& model, const IndexBox& box, std::vector<Statistic>& all) {
     const bool whole = isWhole(model, box);
-    // Within a voxel of a domain's face the caps bend the surface; and they lie beyond it.
+    // Within a voxel of a domain's face caps distort the surface; the caps themselves lie beyond it.
     IndexBox inner = box;
     for (int axis = 0; axis < 3; ++axis) {
         inner.min[axis] += whole ? -8 : box.min[axis] == model.counted.min[axis] ? 1 : 0;
@@ -48,7 +50,7 @@ void addSurface(const MeasuredModel& model, const IndexBox& box, std::vector<Sta
     all.push_back(number("mean curvature per volume", -2, per(surface.meanCurvature, volume)));
 }
 
-// Along x, y and z, of the solid and of the void.
+// Along x, y and z, for solid and void.
 using LinesByAxis = std::array<LineStatistics, 6>;
 
 LinesByAxis measureLines(const Occupancy& solid, int reach, const RunContext& ctx) {

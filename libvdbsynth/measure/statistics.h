@@ -1,7 +1,8 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/geometry/mesh.h"
-#include "libvdbsynth/measure/components.h"
+#include "libvdbsynth/grid/occupancy.h"
+#include "libvdbsynth/measure/functionals.h"
 #include "libvdbsynth/measure/measures.h"
 #include "libvdbsynth/measure/thickness.h"
 
@@ -11,25 +12,25 @@
 
 namespace vdbsynth {
 
-/// A level set made ready to be measured, in voxels of its own from 0 on.
+/// A level set prepared for measuring, in its own voxels from 0 on.
 struct MeasuredModel {
     std::shared_ptr<const BrickField> field;  ///< [voxels] clamped to `band`
     float band = 3;
-    IndexBox counted;                 ///< the domain within the field's box; statistics mean this box
-    Beyond beyond = Beyond::Unknown;  ///< Void: `counted` is the box of a whole object, the field goes on
+    IndexBox counted;                 ///< the domain within the field's box; statistics refer to this box
+    Beyond beyond = Beyond::Unknown;  ///< Void: `counted` is the box of a whole object, the field continues
     Mesh surface;                     ///< zero level, faces outward, with its caps beyond the domain
     SurfaceElements elements;         ///< of the surface
     Occupancy solid;                  ///< of the field's box
     Thickness thickness, pores;       ///< pores empty for a whole object
 };
 
-/// Fills elements, solid, thickness and pores from the rest.
-/// @param coarsening  side of the samples that thickness works on [voxels]: 1, 2, 4 ...
+/// Computes elements, solid, thickness and pores from the rest.
+/// @param coarsening  side of the samples that thickness is measured on [voxels]: 1, 2, 4 ...
 /// @throw Error Memory, Cancelled
 void prepare(MeasuredModel& model, int coarsening, const RunContext& ctx = {});
 
-/// All statistics of a box of a model that do not depend on the box's size in the mean, in a fixed order.
-/// Of a whole object's Euler characteristic and surface all is counted, over the box's volume.
+/// All statistics of a box of a model whose mean does not depend on the box's size, in a fixed order. For a
+/// whole object, Euler characteristic and surface are totals over the box's volume.
 /// @param box    within model.counted, sides at least 4
 /// @param reach  [voxels] of curves, less than every side
 /// @par Repeats same bits for any number of threads
@@ -41,7 +42,7 @@ Topology measureTopology(const MeasuredModel& model, const RunContext& ctx = {})
 GradientError measureGradient(const MeasuredModel& model, const RunContext& ctx = {});
 
 /// Distance of two statistics: the absolute difference of numbers, the root of the mean squared difference of
-/// curves (as far as both go).
+/// curves (up to the shorter one's end).
 double statisticDistance(const Statistic& a, const Statistic& b);
 
 }  // namespace vdbsynth

@@ -75,7 +75,7 @@ SurfaceDistance oneWay(const Mesh& from, const Mesh& to, const std::optional<Ind
     SurfaceDistance result;
     double area = 0;
     for (std::size_t i = 0; i < distances.size(); ++i) {
-        // A vertex of no face is not of the surface.
+        // A vertex without faces is not on the surface.
         if (own.area[i] <= 0 || !counts(from.points[i], within)) continue;
         area += own.area[i];
         result.mean += own.area[i] * distances[i];

@@ -8,11 +8,11 @@
 
 namespace vdbsynth {
 
-/// Distances run from each vertex to the nearest point of the faces around the other mesh's 8 nearest
-/// vertices, so meshes should be about as fine as each other, as two zero levels are.
+/// Distances are from each vertex to the nearest point of the faces around the other mesh's 8 nearest
+/// vertices, so both meshes should be about equally fine, as two zero levels are.
 /// @param a, b    in one space and unit, with at least one face each
-/// @param within  only vertices in that box count: where caps close a texture, not these; none: all
-/// @return 0 where no vertex counts
+/// @param within  only vertices in that box are used, to exclude the caps of a texture; none: all
+/// @return 0 without vertices
 /// @par Cost    O(vertices log vertices)   @par Repeats same bits for any number of threads
 SurfaceDistance surfaceDistance(const Mesh& a, const Mesh& b, const std::optional<IndexBox>& within = {},
                                 const RunContext& ctx = {});

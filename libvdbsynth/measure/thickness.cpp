@@ -1,9 +1,10 @@
-// Local thickness in three steps: distances to the other phase, the balls that are in no other, and the
+// Local thickness in three steps: distances to the other phase, the balls that no other contains, and the
 // largest of them over every voxel.
 #include "libvdbsynth/measure/thickness.h"
 
 #include "libvdbsynth/base/parallel.h"
-#include "libvdbsynth/measure/distance_transform.h"
+#include "libvdbsynth/distance/distance_transform.h"
+#include "libvdbsynth/math/lattice.h"
 
 #include <algorithm>
 #include <array>
@@ -15,8 +16,8 @@
 namespace vdbsynth {
 namespace {
 
-// [samples] around a ball that count as held: those that the balls left out would have held, and on a coarse
-// lattice those of a sample whose middle is outside.
+// [samples] around a ball that count as inside: those that the omitted balls would have covered, and on a
+// coarse lattice those of a sample whose middle is outside.
 float marginOf(int factor) {
     return factor == 1 ? 0.35f : 0.6f;
 }
@@ -43,9 +44,9 @@ struct PhaseDistances {
     float at(const Index3& p) const { return sign * distances.at(p); }
 };
 
-// Away from every ridge distances grow as fast as one goes from the surface, and the ball lies in the next
-// one on the way. Within a sample of a ridge the difference across two samples shows that they do not. Writes
-// the squared slope of a whole row.
+// Away from every ridge, distances grow at rate one away from the surface, and the ball is inside the next
+// one on that path. Within a sample of a ridge the difference across two samples shows that they do not.
+// Writes the squared slope of a whole row.
 void slopesOfRow(const Distances& d, int x, int y, std::vector<float>& squared) {
     const Index3& size = d.size;
     const auto row = [&](int i, int k) {
@@ -68,9 +69,11 @@ void slopesOfRow(const Distances& d, int x, int y, std::vector<float>& squared) 
 
 constexpr float kRidgeSlope = 0.95f;
 
+constexpr IndexBox kAround{{-1, -1, -1}, {1, 1, 1}};  // the steps to the samples around one, and to itself
+
 // Where a ball may stand around a sample, on a lattice of quarters, and its ways to the 27 samples around.
 struct Stands {
-    static constexpr int kSteps = 5, kNeighbours = 27, kPadded = 28;
+    static constexpr int kSteps = 5, kPadded = 28;
     std::array<Vec3f, kSteps * kSteps * kSteps> place;
     std::array<std::array<float, kPadded>, kSteps * kSteps * kSteps> way;
 
@@ -78,35 +81,38 @@ struct Stands {
         return std::size_t(((x + 2) * kSteps + y + 2) * kSteps + z + 2);
     }
     Stands() {
-        for (int n = 0; n < kSteps * kSteps * kSteps; ++n) {
-            const Vec3f c{float(n / 25 - 2) / 4, float(n / 5 % 5 - 2) / 4, float(n % 5 - 2) / 4};
-            place[std::size_t(n)] = c;
-            way[std::size_t(n)].fill(1e9f);
-            for (int k = 0; k < kNeighbours; ++k)
-                way[std::size_t(n)][std::size_t(k)] =
-                    length(c - Vec3f{float(k / 9 - 1), float(k / 3 % 3 - 1), float(k % 3 - 1)});
-        }
+        forEachVoxel(IndexBox::cube({-2, -2, -2}, kSteps), [&](const Index3& at) {
+            const std::size_t n = number(at.x, at.y, at.z);
+            const Vec3f c{float(at.x) / 4, float(at.y) / 4, float(at.z) / 4};
+            place[n] = c;
+            way[n].fill(1e9f);
+            std::size_t k = 0;
+            forEachVoxel(kAround, [&](const Index3& q) {
+                way[n][k++] = length(c - Vec3f{float(q.x), float(q.y), float(q.z)});
+            });
+        });
     }
 };
 
-// The ball that stands best within half a sample of a ridge sample p. From a neighbour q on, distances grow
-// by at most the way: min over q of d(q) + |c - q| bounds the radius at c, and is it where one of the q lies
+// The best-placed ball within half a sample of a ridge sample p. From a neighbour q on, distances grow by at
+// most the path length: min over q of d(q) + |c - q| bounds the radius at c, and equals it if one of the q is
 // on the line from c to the surface.
 Ball bestBall(const PhaseDistances& d, const Index3& p) {
     static const Stands stands;
     std::array<float, Stands::kPadded> near;
     near.fill(1e9f);
-    for (int k = 0; k < Stands::kNeighbours; ++k) {
-        const Index3 q = p + Index3{k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1};
-        if (IndexBox::fromSize(d.distances.size).contains(q)) near[std::size_t(k)] = d.at(q);
-    }
+    std::size_t sample = 0;
+    forEachVoxel(kAround, [&](const Index3& way) {
+        if (IndexBox::fromSize(d.distances.size).contains(p + way)) near[sample] = d.at(p + way);
+        ++sample;
+    });
     float radius = d.at(p);
     Index3 best{0, 0, 0};
     for (const int step : {2, 1}) {
         const Index3 around = best;
-        for (int n = 0; n < 27; ++n) {
-            const Index3 c = around + Index3{n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1} * step;
-            if (std::max({std::abs(c.x), std::abs(c.y), std::abs(c.z)}) > 2) continue;
+        forEachVoxel(kAround, [&](const Index3& to) {
+            const Index3 c = around + to * step;
+            if (std::max({std::abs(c.x), std::abs(c.y), std::abs(c.z)}) > 2) return;
             const std::array<float, Stands::kPadded>& way = stands.way[Stands::number(c.x, c.y, c.z)];
             std::array<float, 4> bounds;
             bounds.fill(1e9f);
@@ -120,7 +126,7 @@ Ball bestBall(const PhaseDistances& d, const Index3& p) {
                 radius = bound;
                 best = c;
             }
-        }
+        });
     }
     return {Vec3f{float(p.x), float(p.y), float(p.z)} + stands.place[Stands::number(best.x, best.y, best.z)],
             radius};
@@ -133,13 +139,13 @@ int levelFor(float radius) {
 }
 
 // Side of the cells [samples of its lattice] of which only the largest ball is drawn: two balls of radius r
-// whose centres are 1.5 sides apart leave out less than the margin between them.
+// whose centres are 1.5 sides apart differ by less than the margin between them.
 int cellFor(float radius) {
     return radius < 3 ? 1 : radius < 10 ? 2 : 3;
 }
 
-// A sample where a ball may stand, the lattice that it would be drawn on, and the cell of which it may be the
-// largest, in one number.
+// A sample that may be a ball's centre, the lattice that the ball would be drawn on, and the cell of which it
+// may be the largest, in one number.
 struct Candidate {
     std::uint64_t cell;
     Index3 place;
@@ -149,12 +155,12 @@ struct Candidate {
 
 Candidate candidateFor(const Index3& p, float radius) {
     const int factor = levelFor(radius), side = factor * cellFor(radius / float(factor));
-    std::uint64_t number = std::uint64_t(side);  // 1, 2, 3 or a power of two times 2 or 3: no two alike
+    std::uint64_t number = std::uint64_t(side);  // 1, 2, 3 or a power of two times 2 or 3: no two equal
     for (int axis = 0; axis < 3; ++axis) number = number << 17 | std::uint64_t(p[axis] / side);
     return {number, p, radius, factor};
 }
 
-// Leaves the largest ball of each cell, the first of several; in the order of the cells.
+// Keeps the largest ball of each cell, the first of several; in the order of the cells.
 void keepLargest(std::vector<Candidate>& all) {
     std::stable_sort(all.begin(), all.end(),
                      [](const Candidate& a, const Candidate& b) { return a.cell < b.cell; });
@@ -196,7 +202,7 @@ std::map<int, Lattice> ballsOf(const PhaseDistances& d, const RunContext& ctx) {
         lattice.factor = factor;
         lattice.size = {(size.x + factor - 1) / factor, (size.y + factor - 1) / factor,
                         (size.z + factor - 1) / factor};
-        // Sample i of the coarse lattice stands in the middle of `factor` fine ones.
+        // Sample i of the coarse lattice is in the middle of `factor` fine ones.
         for (Ball& ball : lattice.balls) {
             for (int axis = 0; axis < 3; ++axis)
                 ball.centre[axis] = (ball.centre[axis] + 0.5f) / float(factor) - 0.5f;
@@ -223,8 +229,7 @@ void draw(const Ball& ball, int low, int high, Lattice& lattice) {
             const float half = std::sqrt(rest);
             const int z0 = std::max(0, int(std::ceil(ball.centre.z - half)));
             const int z1 = std::min(size.z - 1, int(std::floor(ball.centre.z + half)));
-            float* row = lattice.diameter.data() +
-                         (std::size_t(x) * std::size_t(size.y) + std::size_t(y)) * std::size_t(size.z);
+            float* row = lattice.diameter.data() + latticeIndex({x, y, 0}, size);
             for (int z = z0; z <= z1; ++z) row[z] = std::max(row[z], diameter);
         }
     }
@@ -232,10 +237,10 @@ void draw(const Ball& ball, int low, int high, Lattice& lattice) {
 
 void drawAll(Lattice& lattice, const RunContext& ctx) {
     const Index3& size = lattice.size;
-    lattice.diameter.assign(std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z), 0);
+    lattice.diameter.assign(latticeCount(size), 0);
     constexpr int kPlanes = 4;
     const float margin = marginOf(lattice.factor);
-    // Each chunk of planes draws its part of the balls near it; balls are in order of x, up to kDrawnRadius.
+    // Each chunk of planes draws its part of the nearby balls; balls are sorted by x, up to kDrawnRadius.
     const auto before = [](const Ball& ball, float x) { return ball.centre.x < x; };
     parallelFor(ctx, std::size_t(size.x), kPlanes, [&](std::size_t begin, std::size_t end) {
         const float low = float(begin) - kDrawnRadius - 2, high = float(end) + kDrawnRadius + 2;
@@ -265,21 +270,17 @@ Thickness localThickness(const Distances& sampled, int coarsening, Phase phase, 
     result.diameter.assign(sampled.values.size(), 0);
     const Index3& size = result.size;
     parallelFor(ctx, std::size_t(size.x), 4, [&](std::size_t begin, std::size_t end) {
-        for (int x = int(begin); x < int(end); ++x)
-            for (int y = 0; y < size.y; ++y)
-                for (int z = 0; z < size.z; ++z) {
-                    const float own = distances.at({x, y, z});
-                    if (phase == Phase::Solid ? own <= 0 : own < 0) continue;
-                    float diameter = 2 * own;
-                    for (const auto& [factor, lattice] : lattices) {
-                        const std::size_t cell = (std::size_t(x / factor) * std::size_t(lattice.size.y) +
-                                                  std::size_t(y / factor)) *
-                                                     std::size_t(lattice.size.z) +
-                                                 std::size_t(z / factor);
-                        diameter = std::max(diameter, lattice.diameter[cell]);
-                    }
-                    result.diameter[sampled.index({x, y, z})] = diameter * float(step);
-                }
+        forEachVoxel({{int(begin), 0, 0}, {int(end) - 1, size.y - 1, size.z - 1}}, [&](const Index3& p) {
+            const float own = distances.at(p);
+            if (phase == Phase::Solid ? own <= 0 : own < 0) return;
+            float diameter = 2 * own;
+            for (const auto& [factor, lattice] : lattices) {
+                const std::size_t cell =
+                    latticeIndex({p.x / factor, p.y / factor, p.z / factor}, lattice.size);
+                diameter = std::max(diameter, lattice.diameter[cell]);
+            }
+            result.diameter[sampled.index(p)] = diameter * float(step);
+        });
     });
     return result;
 }
@@ -289,20 +290,20 @@ ThicknessSummary summarize(const Thickness& thickness, const IndexBox& box, int 
     summary.share.assign(std::size_t(reach) + 1, 0);
     const int step = thickness.coarsening;
     double count = 0, sum = 0, squares = 0;
-    for (int x = box.min.x / step; x <= std::min(thickness.size.x - 1, box.max.x / step); ++x)
-        for (int y = box.min.y / step; y <= std::min(thickness.size.y - 1, box.max.y / step); ++y)
-            for (int z = box.min.z / step; z <= std::min(thickness.size.z - 1, box.max.z / step); ++z) {
-                const double d = double(
-                    thickness.diameter[(std::size_t(x) * std::size_t(thickness.size.y) + std::size_t(y)) *
-                                           std::size_t(thickness.size.z) +
-                                       std::size_t(z)]);
-                if (d <= 0) continue;
-                count += 1;
-                sum += d;
-                squares += d * d;
-                summary.largest = std::max(summary.largest, d);
-                summary.share[std::size_t(std::min(double(reach), d))] += 1;
-            }
+    IndexBox samples;
+    for (int axis = 0; axis < 3; ++axis) {
+        samples.min[axis] = box.min[axis] / step;
+        samples.max[axis] = std::min(thickness.size[axis] - 1, box.max[axis] / step);
+    }
+    forEachVoxel(samples, [&](const Index3& p) {
+        const double d = double(thickness.diameter[latticeIndex(p, thickness.size)]);
+        if (d <= 0) return;
+        count += 1;
+        sum += d;
+        squares += d * d;
+        summary.largest = std::max(summary.largest, d);
+        summary.share[std::size_t(std::min(double(reach), d))] += 1;
+    });
     if (count == 0) return summary;
     summary.mean = sum / count;
     summary.deviation = std::sqrt(std::max(0.0, squares / count - summary.mean * summary.mean));

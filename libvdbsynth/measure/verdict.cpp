@@ -1,5 +1,7 @@
 #include "libvdbsynth/measure/verdict.h"
 
+#include "libvdbsynth/math/lattice.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -32,12 +34,10 @@ std::vector<IndexBox> subVolumes(const IndexBox& box, const std::array<bool, 3>&
             if (side[axis] < shortest) return {};
         }
     std::vector<IndexBox> boxes;
-    for (int x = 0; x < count.x; ++x)
-        for (int y = 0; y < count.y; ++y)
-            for (int z = 0; z < count.z; ++z) {
-                const Index3 low = box.min + Index3{x * side.x, y * side.y, z * side.z};
-                boxes.push_back({low, low + side - Index3{1, 1, 1}});
-            }
+    forEachVoxel(IndexBox::fromSize(count), [&](const Index3& p) {
+        const Index3 low = box.min + Index3{p.x * side.x, p.y * side.y, p.z * side.z};
+        boxes.push_back({low, low + side - Index3{1, 1, 1}});
+    });
     return boxes;
 }
 

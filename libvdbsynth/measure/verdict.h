@@ -9,22 +9,22 @@
 namespace vdbsynth {
 
 /// Boxes of equal size that an exemplar is cut into: two along each of three stationary axes, three along
-/// each of two, eight along one. The others keep their length.
+/// each of two, eight along one. The other axes keep their length.
 /// @param stationary  x, y, z
-/// @return empty if a box would be under `shortest` voxels long along a stationary axis
+/// @return empty if a box would be shorter than `shortest` voxels along a stationary axis
 std::vector<IndexBox> subVolumes(const IndexBox& box, const std::array<bool, 3>& stationary, int shortest);
 
-/// The mean of one statistic over several boxes, value by value. @param parts  one at least
+/// The mean of one statistic over several boxes, value by value. @param parts  at least one
 Statistic meanOf(const std::vector<Statistic>& parts);
 
-/// @param parts   the same statistic of each sub-volume, two at least
+/// @param parts   the same statistic of each sub-volume, at least two
 Verdict judge(const std::vector<Statistic>& parts, const Statistic& result);
 
-/// The same for a distance to the exemplar: that of each sub-volume to the others, that of the result to the
-/// exemplar; the mean is 0 by definition.
+/// The same for a distance to the exemplar: of each sub-volume to the others, of the result to the exemplar;
+/// the mean is 0 by definition.
 Verdict judgeDistance(const std::string& name, const std::vector<double>& parts, double result);
 
-/// @return null if there is none of that name
+/// @return null if none has that name
 const Verdict* findVerdict(const std::vector<Verdict>& verdicts, const std::string& name);
 
 }  // namespace vdbsynth

@@ -20,12 +20,9 @@ constexpr std::uint32_t kGroovePurpose = 0x67726f76, kPlacePurpose = 0x706c6163;
 
 BrickField fieldOf(const IndexBox& domain, const Shape& shape, const RunContext& ctx) {
     const IndexBox box = domain.expanded(kExemplarMargin);
-    return BrickField::generate(box, ctx, [&](const IndexBox& brick, float* samples) {
-        for (int i = 0; i < BrickField::kSamples; ++i) {
-            const Index3 p = brick.min + Index3{i >> 6, (i >> 3) & 7, i & 7};
-            samples[i] = float(std::clamp(shape({double(p.x), double(p.y), double(p.z)}),
-                                          -double(kExemplarLimit), double(kExemplarLimit)));
-        }
+    return BrickField::fromVoxels(box, ctx, [&](const Index3& p) {
+        return float(std::clamp(shape({double(p.x), double(p.y), double(p.z)}), -double(kExemplarLimit),
+                                double(kExemplarLimit)));
     });
 }
 
@@ -67,7 +64,7 @@ AnalogyPairFields grooves(int resolution, double feature, const RunContext& ctx)
     return pairOf(IndexBox::fromSize({resolution, resolution, resolution * 3 / 2}), plain, grooved, ctx);
 }
 
-// Places on a plane, one in each cell of a grid, moved a little.
+// Positions on a plane, one in each cell of a grid, jittered.
 struct Places {
     Places(int resolution, double wanted, std::uint64_t seed)
         : count(std::max(2, int(std::lround(resolution / wanted)))), spacing(double(resolution) / count) {
@@ -78,7 +75,7 @@ struct Places {
             y.push_back((i % count + 0.25 + shift + random.uniform(-0.08, 0.08)) * spacing);
         }
     }
-    // Offset to the nearest place, the pattern going on beyond the domain.
+    // Offset to the nearest position; the pattern continues beyond the domain.
     Vec3d nearest(const Vec3d& p) const {
         Vec3d best{1e9, 1e9, 0};
         const int row = int(std::floor(p.x / spacing)), column = int(std::floor(p.y / spacing));
@@ -96,7 +93,7 @@ struct Places {
     std::vector<double> x, y;
 };
 
-// A slab that goes on below, and what is made of its top.
+// A slab that continues below, and a textured version of its top.
 AnalogyPairFields slab(const std::string& kind, int resolution, double feature, const RunContext& ctx) {
     const Places places(resolution, feature, ctx.seed);
     Random random(ctx.seed, 1, kPlacePurpose);

@@ -37,7 +37,7 @@ const std::vector<ExemplarKind>& exemplarKinds() {
         {"foam", "closed cells with thin walls", 20, 0},
         {"sponge", "a thresholded random field", 20, 0},
         {"terrain", "hills with finer and finer detail", 32, 1.25},
-        {"three-tori", "three rings through each other, an object of its own", 16, 0},
+        {"three-tori", "three linked rings, a single object", 16, 0},
         {"weave", "yarns over and under each other", 16, 1.25},
     };
     return kinds;

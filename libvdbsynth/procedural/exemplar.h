@@ -7,15 +7,14 @@
 
 namespace vdbsynth {
 
-/// Procedural exemplars: textures of geometry whose process can be sampled afresh with another seed.
+/// Procedural exemplars: textures of geometry whose process can be sampled again with another seed.
 /// All lengths are voxels; the domain begins at 0.
 struct ExemplarOptions {
-    std::string kind;  ///< one of exemplarKinds()
-    Index3 size{0, 0,
-                0};       ///< domain [voxels], each side 8..4096; 0 takes the kind's default for `resolution`
-    int resolution = 64;  ///< longest side of the domain where `size` is 0, 16..4096
-    double feature = 0;   ///< typical feature [voxels], 4..256; 0 takes the kind's default. A larger domain
-                          ///< holds more features.
+    std::string kind;      ///< one of exemplarKinds()
+    Index3 size{0, 0, 0};  ///< domain [voxels], each side 8..4096; 0: the kind's default for `resolution`
+    int resolution = 64;   ///< longest side of the domain if `size` is 0, 16..4096
+    /// Typical feature [voxels], 4..256; 0: the kind's default. A larger domain holds more features.
+    double feature = 0;
 };
 
 struct ExemplarKind {
@@ -27,10 +26,10 @@ struct ExemplarKind {
 const std::vector<ExemplarKind>& exemplarKinds();
 
 struct ExemplarField {
-    BrickField
-        field;  ///< distances [voxels], clamped to +-kExemplarLimit, over `domain` grown by kExemplarMargin
+    BrickField field;   ///< distances [voxels], clamped to +-kExemplarLimit, over `domain` enlarged by
+                        ///< kExemplarMargin
     IndexBox domain;    ///< begins at 0; the solid is not yet clipped to it
-    bool exact = true;  ///< false: only the zero level is meant, distances have yet to be computed
+    bool exact = true;  ///< false: only the zero level is valid, distances must still be computed
 };
 
 inline constexpr float kExemplarLimit = 4.f;

@@ -7,14 +7,14 @@
 
 namespace vdbsynth {
 
-/// What one kind needs to know. `box` is the domain grown by the margin.
+/// Input of one kind. `box` is the domain enlarged by the margin.
 struct ExemplarRequest {
     IndexBox domain, box;
     double feature = 16;
     std::uint64_t seed = 0;
 };
 
-// One function a kind, each in its own file where it is more than a list of primitives.
+// One function per kind, each in its own file if it is more than a list of primitives.
 std::vector<Primitive> ballsPrimitives(const ExemplarRequest& request, const RunContext& ctx);
 std::vector<Primitive> gridPrimitives(const ExemplarRequest& request);
 std::vector<Primitive> chainmailPrimitives(const ExemplarRequest& request);

@@ -1,7 +1,7 @@
 #include "libvdbsynth/procedural/packing.h"
 
 #include "libvdbsynth/base/random.h"
-#include "libvdbsynth/math/index_box.h"
+#include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/math/trigonometry.h"
 
 #include <algorithm>
@@ -28,20 +28,16 @@ void forClosePairs(const std::vector<PackedBall>& balls, const Vec3d& low, const
                            cells[axis] - 1);
         return c;
     };
-    const auto flat = [&](const Index3& c) {
-        return (std::size_t(c.x) * std::size_t(cells.y) + std::size_t(c.y)) * std::size_t(cells.z) +
-               std::size_t(c.z);
-    };
-    std::vector<std::vector<std::size_t>> lists(std::size_t(cells.x) * std::size_t(cells.y) *
-                                                std::size_t(cells.z));
-    for (std::size_t i = 0; i < balls.size(); ++i) lists[flat(cellOf(balls[i].centre))].push_back(i);
+    std::vector<std::vector<std::size_t>> lists(latticeCount(cells));
+    for (std::size_t i = 0; i < balls.size(); ++i)
+        lists[latticeIndex(cellOf(balls[i].centre), cells)].push_back(i);
     for (std::size_t i = 0; i < balls.size(); ++i) {
         const Index3 c = cellOf(balls[i].centre);
-        for (int x = std::max(0, c.x - 1); x <= std::min(cells.x - 1, c.x + 1); ++x)
-            for (int y = std::max(0, c.y - 1); y <= std::min(cells.y - 1, c.y + 1); ++y)
-                for (int z = std::max(0, c.z - 1); z <= std::min(cells.z - 1, c.z + 1); ++z)
-                    for (std::size_t j : lists[flat({x, y, z})])
-                        if (j > i && length(balls[j].centre - balls[i].centre) < reach) pair(i, j);
+        const IndexBox around = IndexBox{c, c}.expanded(1).intersection(IndexBox::fromSize(cells));
+        forEachVoxel(around, [&](const Index3& cell) {
+            for (std::size_t j : lists[latticeIndex(cell, cells)])
+                if (j > i && length(balls[j].centre - balls[i].centre) < reach) pair(i, j);
+        });
     }
 }
 
@@ -88,7 +84,7 @@ std::vector<PackedBall> packBalls(const Vec3d& low, const Vec3d& high, double ra
         radius[j] = std::min(radius[j], balls[j].radius * share);
     });
     for (std::size_t i = 0; i < balls.size(); ++i) balls[i].radius = radius[i];
-    // A ball squeezed to a crumb would be a shape that the process does not have.
+    // Shrinking a ball to a tiny one would make a shape that the process does not have.
     balls.erase(std::remove_if(balls.begin(), balls.end(),
                                [&](const PackedBall& b) { return b.radius < 0.6 * radiusLow; }),
                 balls.end());

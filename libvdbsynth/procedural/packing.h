@@ -16,7 +16,7 @@ struct PackedBall {
 /// `density` of it, pushed apart where they overlap for a fixed number of rounds, then shrunk where they
 /// still do: no two balls overlap or touch.
 /// @param density  0..0.6
-/// @par Cost    O(balls) a round    @par Repeats same result for (arguments, seed)
+/// @par Cost    O(balls) per round    @par Repeats same result for (arguments, seed)
 std::vector<PackedBall> packBalls(const Vec3d& low, const Vec3d& high, double radiusLow, double radiusHigh,
                                   double density, std::uint64_t seed, const RunContext& ctx = {});
 

@@ -1,49 +1,44 @@
 #include "libvdbsynth/procedural/primitives.h"
 
+#include "libvdbsynth/math/lattice.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace vdbsynth {
 namespace {
 
-constexpr int kSide = BrickField::kSide;
 constexpr int kCell = 32;  // bins of the look-up, in voxels
 
-// Primitives by the coarse cells that their grown bounds touch.
+// Primitives by the coarse cells that their enlarged bounds touch.
 class Bins {
 public:
     Bins(const std::vector<Primitive>& primitives, const IndexBox& box, double reach) : mBox(box) {
         const Index3 size = box.size();
         mCells = {(size.x + kCell - 1) / kCell, (size.y + kCell - 1) / kCell, (size.z + kCell - 1) / kCell};
-        mLists.resize(std::size_t(mCells.x) * std::size_t(mCells.y) * std::size_t(mCells.z));
+        mLists.resize(latticeCount(mCells));
         for (std::uint32_t i = 0; i < primitives.size(); ++i) {
             Vec3d centre;
             double radius;
             primitives[i].bound(centre, radius);
-            Index3 low, high;
+            IndexBox cells;
             for (int axis = 0; axis < 3; ++axis) {
-                low[axis] =
+                cells.min[axis] =
                     std::max(0, int(std::floor((centre[axis] - radius - reach - box.min[axis]) / kCell)));
-                high[axis] =
+                cells.max[axis] =
                     std::min(mCells[axis] - 1,
                              int(std::floor((centre[axis] + radius + reach - box.min[axis]) / kCell)));
             }
-            for (int x = low.x; x <= high.x; ++x)
-                for (int y = low.y; y <= high.y; ++y)
-                    for (int z = low.z; z <= high.z; ++z) mLists[index({x, y, z})].push_back(i);
+            forEachVoxel(cells, [&](const Index3& c) { mLists[latticeIndex(c, mCells)].push_back(i); });
         }
     }
     // kCell is a multiple of the brick's side, so a brick lies in one cell.
     const std::vector<std::uint32_t>& near(const Index3& corner) const {
         const Index3 local = corner - mBox.min;
-        return mLists[index({local.x / kCell, local.y / kCell, local.z / kCell})];
+        return mLists[latticeIndex({local.x / kCell, local.y / kCell, local.z / kCell}, mCells)];
     }
 
 private:
-    std::size_t index(const Index3& c) const {
-        return (std::size_t(c.x) * std::size_t(mCells.y) + std::size_t(c.y)) * std::size_t(mCells.z) +
-               std::size_t(c.z);
-    }
     IndexBox mBox;
     Index3 mCells;
     std::vector<std::vector<std::uint32_t>> mLists;
@@ -93,15 +88,12 @@ BrickField unionField(const std::vector<Primitive>& primitives, const IndexBox& 
         std::vector<const Primitive*> near;
         for (std::uint32_t i : bins.near(brick.min))
             if (primitives[i].distance(middle) < reach) near.push_back(&primitives[i]);
-        for (int x = 0; x < kSide; ++x)
-            for (int y = 0; y < kSide; ++y)
-                for (int z = 0; z < kSide; ++z) {
-                    const Vec3d p{double(brick.min.x + x), double(brick.min.y + y), double(brick.min.z + z)};
-                    double nearest = double(limit);
-                    for (const Primitive* primitive : near)
-                        nearest = std::min(nearest, primitive->distance(p));
-                    *samples++ = float(std::max(nearest, -double(limit)));
-                }
+        forEachVoxel(brick, [&](const Index3& voxel) {
+            const Vec3d p{double(voxel.x), double(voxel.y), double(voxel.z)};
+            double nearest = double(limit);
+            for (const Primitive* primitive : near) nearest = std::min(nearest, primitive->distance(p));
+            *samples++ = float(std::max(nearest, -double(limit)));
+        });
     });
 }
 

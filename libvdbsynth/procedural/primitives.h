@@ -15,7 +15,7 @@ struct Primitive {
     double ring = 0;    ///< torus: distance from centre to the middle of the tube
 
     double distance(const Vec3d& p) const;
-    /// A ball that holds the primitive.
+    /// A bounding ball of the primitive.
     void bound(Vec3d& centre, double& boundRadius) const;
 };
 
@@ -23,7 +23,7 @@ Primitive ball(const Vec3d& centre, double radius);
 Primitive capsule(const Vec3d& a, const Vec3d& b, double radius);
 Primitive torus(const Vec3d& centre, const Vec3d& axis, double ring, double tube);
 
-/// Distance to the union of primitives over a box, clamped to +-limit. Outside the union it is exact; inside
+/// Distance to the union of primitives over a box, clamped to +-limit. Exact outside the union; inside
 /// overlaps it is the deepest primitive's. Cost O(bricks * primitives near each).
 BrickField unionField(const std::vector<Primitive>& primitives, const IndexBox& box, float limit,
                       const RunContext& ctx);

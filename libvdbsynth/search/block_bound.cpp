@@ -1,5 +1,7 @@
 #include "libvdbsynth/search/block_bound.h"
 
+#include "libvdbsynth/math/lattice.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,15 +9,15 @@ namespace vdbsynth {
 namespace {
 
 constexpr int kLanes = kNodeCube;
-constexpr std::size_t kBetweenLooks = 16;  // means after which rows that exceed the limit are left
+constexpr std::size_t kBetweenLooks = 16;  // means after which rows that exceed the limit are dropped
 
-constexpr int kRows = 4;  // of eight positions, side by side: sums that do not wait for each other
+constexpr int kRows = 4;  // of eight positions, in parallel: sums that do not wait for each other
 
-// In the compiler's own vectors: written as loops over arrays, GCC keeps each lane in a register of its own.
+// In the compiler's vector types: for loops over arrays, GCC keeps each lane in a separate register.
 typedef float Row __attribute__((vector_size(4 * kLanes)));
 typedef float UnalignedRow __attribute__((vector_size(4 * kLanes), aligned(4), may_alias));
 
-// Sums the squares of what the means of positions differ by from the query's, until all exceed the limit.
+// Sums the squared differences of positions' means from the query's, until all exceed the limit.
 __attribute__((target_clones("avx2", "default"))) void sumSquares(const float* const rows[kRows],
                                                                   const std::ptrdiff_t* steps,
                                                                   const float* means, std::size_t count,
@@ -53,37 +55,33 @@ __attribute__((target_clones("avx2", "default"))) void sumSquares(const float* c
 QueryLevel queryLevel(const BlockQuery& query, int block, int cell, std::int64_t known) {
     QueryLevel level;
     level.weight = double(cell) * cell * cell / double(known);
-    const int perSide = block / cell;
-    for (int x = 0; x < perSide; ++x)
-        for (int y = 0; y < perSide; ++y)
-            for (int z = 0; z < perSide; ++z) {
-                double sum = 0;
-                bool whole = true;
-                for (int i = 0; i < cell && whole; ++i)
-                    for (int j = 0; j < cell && whole; ++j) {
-                        const std::size_t row =
-                            (std::size_t(x * cell + i) * std::size_t(block) + std::size_t(y * cell + j)) *
-                                std::size_t(block) +
-                            std::size_t(z * cell);
-                        for (int k = 0; k < cell; ++k) {
-                            if (query.known && !query.known[row + std::size_t(k)]) {
-                                whole = false;
-                                break;
-                            }
-                            sum += double(query.samples[row + std::size_t(k)]);
-                        }
+    const IndexBox cells = IndexBox::cube({0, 0, 0}, block / cell * cell);
+    const auto addCell = [&](const Index3& corner) {
+        double sum = 0;
+        bool whole = true;
+        for (int i = 0; i < cell && whole; ++i)
+            for (int j = 0; j < cell && whole; ++j) {
+                const std::size_t row = latticeIndex(corner + Index3{i, j, 0}, {block, block, block});
+                for (int k = 0; k < cell; ++k) {
+                    if (query.known && !query.known[row + std::size_t(k)]) {
+                        whole = false;
+                        break;
                     }
-                if (!whole) continue;
-                level.mean.push_back(float(sum / (double(cell) * cell * cell)));
-                level.offset.push_back({x * cell, y * cell, z * cell});
+                    sum += double(query.samples[row + std::size_t(k)]);
+                }
             }
+        if (!whole) return;
+        level.mean.push_back(float(sum / (double(cell) * cell * cell)));
+        level.offset.push_back(corner);
+    };
+    forEachVoxel(cells, addCell, cell);
     return level;
 }
 
 LevelBound::LevelBound(const QueryLevel& level, float margin)
     : mLevel(level),
       mMargin(margin * std::sqrt(float(level.mean.size()))),
-      // Each addition may round up by half a unit of the last place, and so may the square before it.
+      // Each addition may round up by half a unit in the last place, and so may the square before it.
       mScale(float(level.weight * (1 - 2e-6 - 1.2e-7 * double(level.mean.size())))) {
     for (const Index3& offset : level.offset) mReach = std::max({mReach, offset.x, offset.y, offset.z});
 }
@@ -108,7 +106,7 @@ const std::vector<float>& CubeBounds::bound(const LevelBound& level, const Level
     const bool dense = !field.dense.samples.empty();
     const int side = kNodeCube + level.mReach;
     if (!dense) {
-        mSamples.resize(std::size_t(side) * std::size_t(side) * std::size_t(side));
+        mSamples.resize(latticeCount({side, side, side}));
         field.bricks->readBox(corner, {side, side, side}, mSamples.data());
     }
     const float* samples = dense ? field.dense.row(corner.x, corner.y, corner.z) : mSamples.data();
@@ -120,7 +118,7 @@ const std::vector<float>& CubeBounds::bound(const LevelBound& level, const Level
     const float* from[kRows];
     float* to[kRows];
     while (rows != 0) {
-        for (int r = 0; r < kRows; ++r) {  // the last one over again where there are no four left
+        for (int r = 0; r < kRows; ++r) {  // repeats the last one if fewer than four are left
             if (rows != 0) {
                 const int row8 = __builtin_ctzll(rows);
                 from[r] = samples + row8 / kNodeCube * plane + row8 % kNodeCube * row;

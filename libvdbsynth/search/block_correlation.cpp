@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/grid/pyramid.h"
+#include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/math/trigonometry.h"
 #include "libvdbsynth/search/block_cost.h"
 
@@ -22,7 +23,7 @@ double volume(const Index3& size) {
     return double(size.x) * double(size.y) * double(size.z);
 }
 
-// Rows of numbers to columns: what was lane j of number i becomes lane i of number j.
+// Transposes numbers: lane j of number i becomes lane i of number j.
 void transpose(const ComplexLanes* from, std::ptrdiff_t step, ComplexLanes* to, std::ptrdiff_t toStep) {
     Lanes real[kLanes], imaginary[kLanes];
     for (int j = 0; j < kLanes; ++j)
@@ -108,8 +109,8 @@ std::vector<ComplexLanes> BlockCorrelation::conjugateSpectrum(const BrickField& 
     return spectrum;
 }
 
-// Transforms the plane x along z and y, to workspace.plane: lines along y, four neighbours along z side by
-// side. `rows` and `samples` are what is filled, the rest is 0.
+// Transforms the plane x along z and y, to workspace.plane: lines along y, four neighbours along z
+// interleaved. Only `rows` and `samples` are nonzero.
 void BlockCorrelation::transformPlane(int x, int rows, int samples, const Fill& fill,
                                       Workspace& workspace) const {
     const std::size_t ny = std::size_t(mSize.y), nz = std::size_t(mSize.z);
@@ -165,9 +166,9 @@ void BlockCorrelation::transformQuery(const std::array<Slot, 2>& slots, bool mas
     }
 }
 
-// Along x there and, multiplied by the exemplar's spectrum, back again; only what positions need is kept.
+// Along x forward and, multiplied by the exemplar's spectrum, back; only the positions' part is kept.
 void BlockCorrelation::multiply(bool masked, Workspace& workspace) const {
-    constexpr std::size_t kTogether = 8;  // lines, so that what is written lies side by side
+    constexpr std::size_t kTogether = 8;  // lines, so that writes are contiguous
     const std::size_t nx = std::size_t(mSize.x), n = std::size_t(mBlock);
     workspace.planes.resize(lines() * std::size_t(mPositions.x));
     workspace.line.assign(nx, ComplexLanes(0.0, 0.0));
@@ -223,16 +224,16 @@ void BlockCorrelation::finishPlane(int x, const std::array<Slot, 2>& slots, floa
     }
 }
 
-// The products' sums are at most the products of the norms, and so is what rounding adds to them, for each of
-// the transforms: of the exemplar and the query by [higham2002, Theorem 24.2] in the 2-norm, of their product
-// term by term. The rest is rounding of squares, means and constants.
+// The products' sums are at most the products of the norms, and so are the rounding errors of each transform:
+// of the exemplar and the query by [higham2002, Theorem 24.2] in the 2-norm, of their product term by term.
+// The rest is rounding of squares, means and constants.
 float BlockCorrelation::mostOff(const std::array<Slot, 2>& slots) const {
     double query = 0, mask = 0;
     float largest = mLargest;
     for (const Slot& slot : slots) {
         if (!slot.query) continue;
         double squares = 0;
-        for (std::size_t i = 0; i < std::size_t(mBlock) * std::size_t(mBlock) * std::size_t(mBlock); ++i) {
+        for (std::size_t i = 0; i < latticeCount({mBlock, mBlock, mBlock}); ++i) {
             if (slot.query->known && !slot.query->known[i]) continue;
             squares += double(slot.query->samples[i]) * double(slot.query->samples[i]);
             largest = std::max(largest, std::abs(slot.query->samples[i]));

@@ -11,21 +11,21 @@
 
 namespace vdbsynth {
 
-/// The costs of a query at all positions at once, whatever its mask: blockCost opened up,
+/// The costs of a query at all positions at once, for any mask: blockCost expanded,
 ///     n dist(p) = sum m E(p + i)^2 - 2 sum m E(p + i) Q(i) + sum m Q(i)^2,
-/// whose first two sums are correlations, products of Fourier transforms. Two queries go through one
-/// transform, as the real and the imaginary part. What comes out is off by rounding, by no more than is said
-/// with it, so it sifts positions and blockCost decides.
+/// whose first two sums are correlations, products of Fourier transforms. Two queries share one transform, as
+/// its real and imaginary parts. The costs have rounding errors within a returned bound, so they only sift
+/// positions; blockCost decides.
 class BlockCorrelation {
 public:
-    /// What a call works in; kept for the next one by the caller.
+    /// Working memory of a call; the caller keeps it for the next one.
     struct Workspace {
         std::vector<ComplexLanes> query, mask, planes, plane, line, other, sum;
         std::vector<float> samples, costs;
     };
     /// Costs of one row of positions along z, from z = 0.
     /// @param slot  which of the two queries
-    /// @param off   by how much each of them may be off
+    /// @param off   bound of each cost's error
     using Visit = std::function<void(int slot, int x, int y, const float* costs, int count, float off)>;
 
     /// Transforms of the exemplar and of its square.
@@ -34,9 +34,9 @@ public:
     /// @par Cost    20 bytes a voxel, sides rounded up to products of 2, 3 and 5; O(voxels log(voxels))
     BlockCorrelation(const BrickField& exemplar, int block, const RunContext& ctx = {});
 
-    /// Calls visit for every row of positions of the one or two queries, each of which knows some sample.
+    /// Calls visit for every row of positions of the one or two queries, each with at least one known sample.
     /// @param second  may be null
-    /// @par Cost    O(voxels log(voxels)) for both; 9 bytes a voxel of workspace
+    /// @par Cost    O(voxels log(voxels)) for both; 9 bytes per voxel of workspace
     /// @par Repeats yes; safe from many threads, each with a workspace of its own
     void costs(const BlockQuery& first, const BlockQuery* second, Workspace& workspace,
                const Visit& visit) const;
@@ -45,7 +45,7 @@ public:
     double work() const { return work(mExemplar); }
     static double work(const Index3& exemplar);
     std::size_t memoryBytes() const;
-    /// What one would take, with a workspace, without making it [bytes].
+    /// Memory of one, with a workspace, without making it [bytes].
     static double memoryNeeded(const Index3& exemplar, int block);
 
 private:
@@ -55,7 +55,7 @@ private:
         float constant = 0;  // of the costs: the query's own mean square
         bool masked = false;
     };
-    // A value of the complex field that is to be transformed: two rows of samples along z at (x, y).
+    // One value of the complex field to transform: two rows of samples along z at (x, y).
     using Fill = std::function<void(int x, int y, float* real, float* imaginary)>;
 
     std::vector<ComplexLanes> conjugateSpectrum(const BrickField& exemplar, bool squared, double& norm,
@@ -73,7 +73,7 @@ private:
     int mBlock;
     float mLargest = 0;  // |sample|
     LineTransform mAlongX, mAlongY, mAlongZ;
-    // Lines along x, four neighbours along z side by side, by z and y.
+    // Lines along x, four neighbours along z interleaved, by z and y.
     std::vector<ComplexLanes> mConjugate, mConjugateSquares;
     double mNorm = 0, mSquaresNorm = 0, mMeanSquare = 0;
     DenseField mEnergies;  // mean square of each block, for queries without a mask

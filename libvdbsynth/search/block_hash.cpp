@@ -1,6 +1,7 @@
 #include "libvdbsynth/search/block_hash.h"
 
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/math/lattice.h"
 
 #include <array>
 #include <cstring>
@@ -11,13 +12,13 @@ namespace vdbsynth {
 namespace {
 
 constexpr int kGroup = kPositionGroup;
-// Side of the regions of positions hashed at once: a block's samples are read for a region, not for a group.
+// Side of the regions of positions hashed together: a block's samples are read per region, not per group.
 constexpr int kRegion = 32;
 static_assert(kRegion % kGroup == 0);
 
 std::uint64_t mix(float value) {
     std::uint32_t bits = 0;
-    if (value != 0.f) std::memcpy(&bits, &value, sizeof bits);  // -0 and +0 are one
+    if (value != 0.f) std::memcpy(&bits, &value, sizeof bits);  // -0 and +0 are equal
     std::uint64_t x = bits + 0x9E3779B97F4A7C15ull;
     x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9ull;
     x = (x ^ (x >> 27)) * 0x94D049BB133111EBull;
@@ -26,7 +27,7 @@ std::uint64_t mix(float value) {
 
 constexpr std::uint64_t kBase[3] = {0x9E3779B97F4A7C15ull, 0xC2B2AE3D27D4EB4Full, 0x165667B19E3779F9ull};
 
-// What hashRegion gives for a block of one value.
+// The hashRegion value of a constant block.
 std::uint64_t constantHash(float value, int block) {
     std::uint64_t hash = mix(value);
     for (std::uint64_t base : kBase) {
@@ -37,9 +38,9 @@ std::uint64_t constantHash(float value, int block) {
     return hash;
 }
 
-// Sums of `block` terms along one axis for every place, each term weighed by a power of the base: the next
-// sum is the last one without its first term and with one more. In place; `stride` from term to term, `width`
-// neighbours side by side.
+// Sums of `block` terms along one axis for every position, each term weighted by a power of the base: the
+// next sum is the last one without its first term plus one more. In place; `stride` from term to term,
+// `width` neighbours in parallel.
 void rollSums(std::uint64_t* values, int length, int block, std::size_t stride, std::size_t width,
               std::uint64_t base, std::vector<std::uint64_t>& scratch) {
     std::uint64_t top = 1;
@@ -72,7 +73,7 @@ void hashRegion(const Index3& size, int block, std::vector<std::uint64_t>& value
     rollSums(values.data(), size.x, block, ny * nz, ny * nz, kBase[2], scratch);
 }
 
-// Blocks of one value are hashed row by row of groups along z, as runs; all others region by region.
+// Constant blocks are hashed row by row of groups along z, as runs; all others region by region.
 class Hashing {
 public:
     Hashing(const BlockIndexData& data, const RunContext& ctx) : mData(data), mContext(ctx) {
@@ -80,7 +81,7 @@ public:
         for (int axis = 0; axis < 3; ++axis) mGroups[axis] = (size[axis] + kGroup - 1) / kGroup;
     }
 
-    // Groups of positions whose blocks are not all constant; what they cost is most of an index.
+    // Groups of positions whose blocks are not all constant; they account for most of an index's cost.
     std::size_t variedGroups() const {
         const std::size_t rows = std::size_t(mGroups.x) * std::size_t(mGroups.y);
         std::vector<std::size_t> counts(rows, 0);
@@ -100,16 +101,14 @@ public:
         Index3 regions;
         for (int axis = 0; axis < 3; ++axis) regions[axis] = (size[axis] + kRegion - 1) / kRegion;
         const std::size_t rows = std::size_t(mGroups.x) * std::size_t(mGroups.y),
-                          count = std::size_t(regions.x) * std::size_t(regions.y) * std::size_t(regions.z);
+                          count = latticeCount(regions);
         std::vector<std::vector<Hashed>> found(rows + count);
         parallelFor(mContext, rows, 4, [&](std::size_t begin, std::size_t end) {
             for (std::size_t row = begin; row < end; ++row) hashConstants(row, found[row]);
         });
         parallelFor(mContext, count, 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t r = begin; r < end; ++r) {
-                const int z = int(r) % regions.z, y = int(r) / regions.z % regions.y,
-                          x = int(r) / regions.z / regions.y;
-                hashVaried(Index3{x, y, z} * kRegion, found[rows + r]);
+                hashVaried(latticeVoxel(r, regions) * kRegion, found[rows + r]);
             }
         });
         std::vector<Hashed> all;
@@ -130,7 +129,7 @@ private:
     }
 
     void hashConstants(std::size_t row, std::vector<Hashed>& found) const {
-        // Where in `found` the run of constant blocks of each row of positions is that may still grow.
+        // Index in `found` of each row's run of constant blocks that may still grow.
         std::array<std::size_t, kGroup * kGroup> open;
         open.fill(kNone);
         for (int group = 0; group < mGroups.z; ++group) {
@@ -148,46 +147,40 @@ private:
         const IndexBox blocks = IndexBox::cube(at, kRegion).intersection(mData.positions);
         std::vector<Index3> varied;
         float value = 0;
-        for (int x = blocks.min.x; x <= blocks.max.x; x += kGroup)
-            for (int y = blocks.min.y; y <= blocks.max.y; y += kGroup)
-                for (int z = blocks.min.z; z <= blocks.max.z; z += kGroup)
-                    if (!isConstant({x, y, z}, value)) varied.push_back({x, y, z});
+        const auto addVaried = [&](const Index3& p) {
+            if (!isConstant(p, value)) varied.push_back(p);
+        };
+        forEachVoxel(blocks, addVaried, kGroup);
         if (varied.empty()) return;
         const int more = mData.block - 1;
         const Index3 size = blocks.size() + Index3{more, more, more};
-        const std::size_t count = std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
+        const std::size_t count = latticeCount(size);
         std::vector<float> samples(count);
         mData.exemplar->readBox(at, size, samples.data());
         std::vector<std::uint64_t> hashes(count);
         for (std::size_t i = 0; i < count; ++i) hashes[i] = mix(samples[i]);
         hashRegion(size, mData.block, hashes);
         for (const Index3& group : varied)
-            for (int i = 0; i < kGroup * kGroup * kGroup; ++i) {
-                const Index3 p = group + Index3{i / (kGroup * kGroup), i / kGroup % kGroup, i % kGroup};
-                if (!blocks.contains(p) || !mData.eligible(p)) continue;
-                const Index3 in = p - at;
-                const std::size_t place =
-                    (std::size_t(in.x) * std::size_t(size.y) + std::size_t(in.y)) * std::size_t(size.z) +
-                    std::size_t(in.z);
-                found.push_back({hashes[place], {mData.numberOf(p), 1}});
-            }
+            forEachVoxel(IndexBox::cube(group, kGroup).intersection(blocks), [&](const Index3& p) {
+                if (!mData.eligible(p)) return;
+                found.push_back({hashes[latticeIndex(p - at, size)], {mData.numberOf(p), 1}});
+            });
     }
 
     void addConstant(const Index3& at, std::uint64_t hash, std::array<std::size_t, kGroup * kGroup>& open,
                      std::vector<Hashed>& found) const {
-        for (int i = 0; i < kGroup * kGroup * kGroup; ++i) {
-            const Index3 p = at + Index3{i / (kGroup * kGroup), i / kGroup % kGroup, i % kGroup};
-            if (!mData.positions.contains(p) || !mData.eligible(p)) continue;
-            std::size_t& run = open[std::size_t(i / kGroup)];
+        forEachVoxel(IndexBox::cube(at, kGroup).intersection(mData.positions), [&](const Index3& p) {
+            if (!mData.eligible(p)) return;
+            std::size_t& run = open[std::size_t((p.x - at.x) * kGroup + p.y - at.y)];
             const std::uint64_t number = mData.numberOf(p);
             if (run != kNone && found[run].hash == hash &&
                 found[run].run.first + found[run].run.length == number) {
                 ++found[run].run.length;
-                continue;
+                return;
             }
             run = found.size();
             found.push_back({hash, {number, 1}});
-        }
+        });
     }
 
     static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();

@@ -3,6 +3,7 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/search/block_cost.h"
 #include "libvdbsynth/search/block_search.h"
 #include "libvdbsynth/search/block_sift.h"
@@ -16,7 +17,7 @@
 namespace vdbsynth {
 namespace {
 
-// Work by bounds that takes as long as one operation of the transforms, by measurement (decision 012).
+// Work by bounds that takes as long as one operation of the transforms, measured (decision 012).
 constexpr double kBoundsPerOperation = 0.35;
 
 }  // namespace
@@ -38,17 +39,16 @@ void validate(const BlockSearchOptions& options) {
 void validate(const BlockQuery& query, int block) {
     requireOption(query.samples != nullptr, "samples", "null", "those of a block");
     bool finite = true;
-    for (std::size_t i = 0, count = std::size_t(block) * std::size_t(block) * std::size_t(block); i < count;
-         ++i)
+    for (std::size_t i = 0, count = latticeCount({block, block, block}); i < count; ++i)
         finite = finite && ((query.known && !query.known[i]) || std::isfinite(query.samples[i]));
     if (!finite) throw Error(ErrorCode::BadData, "`samples`: hold NaN or infinite values");
 }
 
 struct BlockIndex::Impl {
     BlockIndexData data;
-    bool mayCorrelate = true;  // by the memory there is
+    bool mayCorrelate = true;  // if memory allows
     std::mutex mutex;
-    // One for every call that ran at the same time.
+    // One for every concurrent call.
     std::vector<std::unique_ptr<BlockSearchScratch>> idle;
     std::vector<std::unique_ptr<BlockCorrelation::Workspace>> workspaces;
     std::mutex making;
@@ -74,7 +74,7 @@ struct BlockIndex::Impl {
         return *correlation;
     }
 
-    // Not finished if it is for correlation to go on.
+    // Unfinished if correlation should continue.
     PartialSearch begin(const BlockQuery& query, const BlockSearchOptions& options,
                         BlockSearchCounts& counts) {
         double mostWork = std::numeric_limits<double>::infinity();
@@ -94,7 +94,7 @@ struct BlockIndex::Impl {
         return found;
     }
 
-    // Goes on with one or two queries (the second may be null) that bounds were not good for.
+    // Continues with one or two queries (the second may be null) for which bounds left too much.
     void finish(const BlockQuery& first, PartialSearch& firstFound, const BlockQuery* second,
                 PartialSearch* secondFound, const BlockSearchOptions& options, const BlockCorrelation& by,
                 BlockSearchCounts& counts) {
@@ -140,7 +140,7 @@ std::vector<BlockMatch> BlockIndex::match(const BlockQuery& query, const BlockSe
     BlockSearchCounts& count = counts ? *counts : ignored;
     PartialSearch found = mImpl->begin(query, options, count);
     if (!found.finished) {
-        RunContext alone;  // others may be searching on the other threads
+        RunContext alone;  // other queries may be running on the other threads
         alone.threads = 1;
         mImpl->finish(query, found, nullptr, nullptr, options, mImpl->correlationWith(alone), count);
     }
@@ -220,15 +220,12 @@ std::vector<BlockMatch> matchBlocksLinearly(const BrickField& exemplar, int bloc
     const IndexBox box = query.candidates.empty() ? positions : query.candidates.intersection(positions);
     const std::int64_t known = countKnown(query.known, block);
     BestBlocks best(count);
-    for (int x = box.min.x; x <= box.max.x; ++x)
-        for (int y = box.min.y; y <= box.max.y; ++y)
-            for (int z = box.min.z; z <= box.max.z; ++z) {
-                const Index3 p{x, y, z};
-                if (mask && !blockInsideMask(*mask, p, block)) continue;
-                best.add({p, known == 0 ? 0.0
-                                        : blockCost(exemplar, p, block, query.samples, query.known, known,
-                                                    best.limit())});
-            }
+    forEachVoxel(box, [&](const Index3& p) {
+        if (mask && !blockInsideMask(*mask, p, block)) return;
+        best.add({p, known == 0
+                         ? 0.0
+                         : blockCost(exemplar, p, block, query.samples, query.known, known, best.limit())});
+    });
     return best.matches();
 }
 

@@ -10,12 +10,12 @@
 
 namespace vdbsynth {
 
-/// A block to look for. All pointers are borrowed for the call.
+/// A query block. All pointers are borrowed for the call.
 struct BlockQuery {
     const float* samples = nullptr;       ///< [N x N x N], z fastest, in the exemplar's unit
     const std::uint8_t* known = nullptr;  ///< [N x N x N] nonzero where samples count; null: everywhere
-    IndexBox candidates;                  ///< where the match's minimum corner may lie; empty: anywhere
-    std::vector<Index3> hints;  ///< places worth trying first; they change the time, never the answer
+    IndexBox candidates;                  ///< allowed minimum corners of the match; empty: anywhere
+    std::vector<Index3> hints;            ///< positions to try first; they change the time, never the answer
 };
 
 struct BlockMatch {
@@ -23,23 +23,23 @@ struct BlockMatch {
     double cost = 0;  ///< blockCost
 };
 
-/// How matches are looked for; both ways give the same answers.
+/// How matches are searched; both ways give the same answers.
 enum class BlockSearchWay {
-    Planned,     ///< by bounds; by correlation once they turn out to leave too much
+    Planned,     ///< by bounds; by correlation if these leave too many positions
     Bounds,      ///< by bounds alone
-    Correlation  ///< all costs at once by the FFT, whatever the query
+    Correlation  ///< all costs at once by the FFT, for any query
 };
 
 struct BlockSearchOptions {
-    int count = 1;  ///< how many matches, at least 1
-    /// 0: exact. Above: what a search may settle for. Everything whose lower bound exceeds the cost found so
-    /// far divided by (1 + tolerance)^2 is left out, so that the k-th answer's root-mean-square difference is
-    /// at most (1 + tolerance) times that of the k-th best block. 0..100
+    int count = 1;  ///< number of matches, at least 1
+    /// 0: exact. Above: an approximate search. It skips everything whose lower bound exceeds the cost found
+    /// so far divided by (1 + tolerance)^2, so that the k-th answer's root-mean-square difference is at most
+    /// (1 + tolerance) times that of the k-th best block. 0..100
     double tolerance = 0;
     BlockSearchWay way = BlockSearchWay::Planned;
 };
 
-/// What a search did, summed over calls by the caller.
+/// Counters of a search; the caller sums them over calls.
 struct BlockSearchCounts {
     std::uint64_t groups = 0;      ///< groups of positions opened
     std::uint64_t nodes = 0;       ///< bounds computed for single nodes
@@ -57,10 +57,9 @@ struct BlockSearchCounts {
 
 struct BlockIndexOptions {
     int block = 16;                    ///< N, side of the blocks [voxels], 4..256
-    const BrickField* mask = nullptr;  ///< a block counts only if the mask is 1 in all of it; null: all
-                                       ///< blocks; same box as the exemplar
-    /// An existing folder where indices are kept by content hash and read from the next time; empty: none. A
-    /// damaged file is made again, with a warning.
+    const BrickField* mask = nullptr;  ///< in the exemplar's box; blocks need 1 throughout; null: all
+    /// An existing folder that stores indices by content hash for later runs; empty: none. A damaged file is
+    /// rebuilt, with a warning.
     std::string cacheFolder;
 };
 
@@ -71,35 +70,32 @@ void validate(const BlockIndexOptions& options, const BrickField* exemplar);
 /// @throw Error InvalidOption (a field out of its range)
 void validate(const BlockSearchOptions& options);
 /// @param block  the index's
-/// @throw Error InvalidOption (null samples), BadData (NaN where samples count)
+/// @throw Error InvalidOption (null samples), BadData (NaN among known samples)
 void validate(const BlockQuery& query, int block);
 
-/// Exact best-match search over all blocks of a sparse field: the search tree of [lagae2004, section 4].
-/// A node's bound is its distance at a level of the block pyramid, never above the distance at a finer one
-/// (Eq. 2). Here
-///  - not node by node, best first, but level by level: what one leaves is bounded by the next, cube by cube
-///  of
-///    8^3 positions (block_bound.h), those with the least bounds first; before that the best few cubes are
-///    followed all the way down, so that the limit is low from the beginning;
-///  - levels are means over cubes of N/2, N/4 ... samples, any N; under a query's mask a cube counts only if
-///  it
-///    is wholly known, and whatever the cubes leave out counts as 0, so bounds hold for any mask;
+/// Exact best-match search over all blocks of a sparse field: the search tree of [lagae2004,
+/// section 4]. A node's bound is its distance at a level of the block pyramid, never above the
+/// distance at a finer one (Eq. 2). Here
+///  - the order is not node by node, best first, but level by level: positions that a level leaves are
+///    bounded by the next, in cubes of 8^3 positions (block_bound.h), cubes with the least bounds first;
+///    before that the best few cubes are followed to the end, so that the limit is low from the beginning;
+///  - levels are means over cubes of N/2, N/4 ... samples, any N; under a query's mask only cubes that are
+///    entirely known are compared and all others contribute 0, so bounds hold for any mask;
 ///  - blocks with identical samples are one node (all constant regions of one value are one node);
 ///  - the parent of partly identical nodes is a group of neighbouring positions with the range of each mean,
 ///    which bounds all of them at once;
-///  - the leaf's cost is blockCost over float samples, bounds carry a margin for rounding;
-///  - where bounds leave more work than comparing everything at once by the FFT (blocks much larger than what
-///    the exemplar is made of), that is done: BlockCorrelation. When is decided by counting, not by a clock.
+///  - the leaf's cost is blockCost over float samples; bounds include a margin for rounding;
+///  - if bounds leave more work than comparing everything at once by the FFT (blocks much larger than the
+///    exemplar's features), BlockCorrelation is used instead. The decision counts operations, not time.
 class BlockIndex {
 public:
     /// @param exemplar  box begins at 0; kept alive and shared
-    /// @throw Error as validate, Unusable (no block inside the mask), Memory (by ctx.maxMemory), Io
-    /// (cacheFolder), Cancelled
-    /// @par Cost    time O(positions whose blocks are not constant * N), memory 14 bytes each of those and 4
-    ///              for each of their means and once more; constant blocks cost 16 bytes a run along z
-    ///              The first query that needs the FFT makes its transforms, 16 to 28 bytes a voxel more,
-    ///              and each thread that uses it as much as half of that; not where ctx.maxMemory is too
-    ///              little for it
+    /// @throw Error as validate, Unusable (no block inside the mask), Memory (by ctx.maxMemory),
+    /// Io (cacheFolder), Cancelled
+    /// @par Cost    time O(positions whose blocks are not constant * N), memory 14 bytes for each of those
+    /// and 4 for each of their means and once more; constant blocks cost 16 bytes per run along z. The first
+    /// query that needs the FFT computes its transforms, 16 to 28 bytes per voxel more, and each thread that
+    /// uses it up to half of that; not if ctx.maxMemory is too small
     /// @par Repeats same bits for any number of threads
     static BlockIndex build(std::shared_ptr<const BrickField> exemplar, const BlockIndexOptions& options,
                             const RunContext& ctx = {});
@@ -108,21 +104,21 @@ public:
     BlockIndex& operator=(BlockIndex&&) noexcept;
     ~BlockIndex();
 
-    /// The `count` best blocks, by (cost, x, y, z). Fewer where fewer are eligible; a query without any known
-    /// sample costs 0 everywhere. May be called from many threads at once.
+    /// The `count` best blocks, by (cost, x, y, z). Fewer if fewer are eligible; a query without known
+    /// samples costs 0 everywhere. May be called from many threads at once.
     /// @throw Error InvalidOption (count under 1, no samples), BadData (NaN among them)
     /// @par Repeats yes; the answer equals matchBlocksLinearly's
     std::vector<BlockMatch> match(const BlockQuery& query, int count = 1,
                                   BlockSearchCounts* counts = nullptr) const;
 
-    /// The same with options: within a tolerance where one is asked for.
+    /// The same with options: within a tolerance, if one is set.
     /// @throw Error InvalidOption (an option out of its range, no samples), BadData (NaN among them)
     /// @par Repeats yes: hints too change nothing while tolerance is 0; above it they may
     std::vector<BlockMatch> match(const BlockQuery& query, const BlockSearchOptions& options,
                                   BlockSearchCounts* counts = nullptr) const;
 
-    /// match for every query, on all of the context's threads. Queries in a row share what they work with and
-    /// give the next one their answers as hints, so keep those together that ask for similar things.
+    /// match for every query, on all of the context's threads. Consecutive queries share working memory and
+    /// pass their answers on as hints, so put similar queries next to each other.
     /// @return answers in the order of the queries
     /// @throw Error InvalidOption, BadData, Cancelled
     /// @par Repeats same bits for any number of threads
@@ -135,9 +131,9 @@ public:
     const BrickField& exemplar() const;
     /// Box of all block positions.
     const IndexBox& positions() const;
-    /// Of the index, with the transforms once they are made.
+    /// Of the index, including the transforms once they exist.
     std::size_t memoryBytes() const;
-    /// Number of distinct blocks, after identical ones became one node.
+    /// Number of distinct blocks, after identical ones were merged into one node.
     std::size_t nodeCount() const;
 
 private:
@@ -146,7 +142,7 @@ private:
     std::unique_ptr<Impl> mImpl;
 };
 
-/// The oracle: the same answer by a scan over all positions. @throw Error as BlockIndex
+/// The oracle: the same answer by a linear scan of all positions. @throw Error as BlockIndex
 std::vector<BlockMatch> matchBlocksLinearly(const BrickField& exemplar, int block, const BlockQuery& query,
                                             int count = 1, const BrickField* mask = nullptr);
 

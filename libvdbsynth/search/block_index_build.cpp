@@ -1,4 +1,4 @@
-// Builds the search tree: pyramid fields, nodes (blocks of one hash become one after they were compared),
+// Builds the search tree: pyramid fields, nodes (blocks with equal hashes are merged after a comparison),
 // groups of neighbouring nodes.
 #include "libvdbsynth/search/block_index_data.h"
 
@@ -6,6 +6,7 @@
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/base/parallel_sort.h"
 #include "libvdbsynth/grid/pyramid.h"
+#include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/search/block_cost.h"
 #include "libvdbsynth/search/block_hash.h"
 #include "libvdbsynth/search/block_index_file.h"
@@ -23,8 +24,8 @@ constexpr int kGroup = kNodeGroup;
 
 std::vector<int> cellsFor(int block) {
     std::vector<int> cells{block / 2};
-    // Sixty-four means pay from cubes of 2 on; five hundred and twelve only where the leaf is much larger
-    // still.
+    // Sixty-four means pay off from cubes of 2 on; five hundred and twelve only if the
+    // leaf is much larger still.
     if (block / 4 >= 2) cells.push_back(block / 4);
     for (int cell = block / 8; cell >= 2; cell /= 2) cells.push_back(cell);
     return cells;
@@ -38,19 +39,19 @@ bool sameBlock(const BlockIndexData& data, std::uint64_t a, std::uint64_t b, std
     if (data.exemplar->constantIn(IndexBox::cube(pa, n), va) &&
         data.exemplar->constantIn(IndexBox::cube(pb, n), vb))
         return va == vb;
-    scratch.resize(std::size_t(n) * std::size_t(n) * std::size_t(n));
+    scratch.resize(latticeCount({n, n, n}));
     data.exemplar->readBox(pa, {n, n, n}, scratch.data());
     const double none = std::numeric_limits<double>::denorm_min();
     return blockCost(*data.exemplar, pb, n, scratch.data(), nullptr, 1, none) == 0;
 }
 
-// Further positions of a node, which is named by its first.
+// Further positions of a node, which is identified by its first.
 struct Member {
     std::uint64_t node;
     PositionRun run;
 };
 
-// One node for each set of identical blocks: its first position, the others as members in order.
+// One node for each set of identical blocks: its first position, with the others as members in order.
 void joinIdentical(const BlockIndexData& data, std::vector<Hashed>& all, std::vector<std::uint64_t>& firsts,
                    std::vector<Member>& members, const RunContext& ctx) {
     parallelSort(ctx, all, [](const Hashed& a, const Hashed& b) {
@@ -92,10 +93,7 @@ public:
             mCubes[axis] = (data.positions.size()[axis] + kNodeCube - 1) / kNodeCube;
     }
     std::uint64_t key(const Index3& p) const {
-        const std::uint64_t cube =
-            (std::uint64_t(p.x / kNodeCube) * std::uint64_t(mCubes.y) + std::uint64_t(p.y / kNodeCube)) *
-                std::uint64_t(mCubes.z) +
-            std::uint64_t(p.z / kNodeCube);
+        const std::uint64_t cube = latticeIndex({p.x / kNodeCube, p.y / kNodeCube, p.z / kNodeCube}, mCubes);
         const Index3 g{p.x / kGroup % 2, p.y / kGroup % 2, p.z / kGroup % 2},
             in{p.x % kGroup, p.y % kGroup, p.z % kGroup};
         return (cube * 8 + std::uint64_t(g.x * 4 + g.y * 2 + g.z)) * kInGroup +
@@ -104,10 +102,7 @@ public:
     Index3 position(std::uint64_t key) const {
         const int in = int(key % kInGroup), g = int(key / kInGroup % 8);
         const std::uint64_t cube = key / kInGroup / 8;
-        const Index3 at{int(cube / std::uint64_t(mCubes.z) / std::uint64_t(mCubes.y)),
-                        int(cube / std::uint64_t(mCubes.z) % std::uint64_t(mCubes.y)),
-                        int(cube % std::uint64_t(mCubes.z))};
-        return at * kNodeCube + Index3{g / 4, g / 2 % 2, g % 2} * kGroup +
+        return latticeVoxel(cube, mCubes) * kNodeCube + Index3{g / 4, g / 2 % 2, g % 2} * kGroup +
                Index3{in / kGroup / kGroup, in / kGroup % kGroup, in % kGroup};
     }
     static std::uint64_t group(std::uint64_t key) { return key / kInGroup; }
@@ -118,7 +113,7 @@ private:
     Index3 mCubes;
 };
 
-// Nodes in their order, and where one group ends and the next begins.
+// Nodes in order, and the boundaries of groups.
 void orderNodes(BlockIndexData& data, std::vector<std::uint64_t> firsts, const RunContext& ctx) {
     const NodeOrder order(data);
     const auto each = [&](auto&& work) {
@@ -222,7 +217,7 @@ IndexBox blockPositions(const BrickField& exemplar, int block) {
 }
 
 bool blockInsideMask(const BrickField& mask, const Index3& corner, int block) {
-    std::vector<float> values(std::size_t(block) * std::size_t(block) * std::size_t(block));
+    std::vector<float> values(latticeCount({block, block, block}));
     mask.readBox(corner, {block, block, block}, values.data());
     return std::all_of(values.begin(), values.end(), [](float v) { return v == 1.f; });
 }
@@ -241,21 +236,21 @@ void makeDense(LevelField& field, const RunContext& ctx) {
     field.bricks.reset();
 }
 
-// A kept index that is damaged is made anew, and the user told.
+// A damaged cached index is rebuilt, with a warning.
 bool readKept(const std::string& path, BlockIndexData& data, const RunContext& ctx) {
     try {
         const bool found = readBlockIndex(path, data);
         message(ctx, MessageLevel::Detail,
-                found ? "index read from " + path : "index will be kept as " + path);
+                found ? "index read from " + path : "index will be saved as " + path);
         return found;
     } catch (const Error& error) {
         if (error.code() != ErrorCode::BadData) throw;
-        message(ctx, MessageLevel::Warning, std::string(error.what()) + "; it is made again");
+        message(ctx, MessageLevel::Warning, std::string(error.what()) + "; it is rebuilt");
         return false;
     }
 }
 
-// Fine to coarse: a level is made from the finer one where its cells are twice as large.
+// Fine to coarse: a level is computed from the finer one if its cells are twice as large.
 void makeMeans(BlockIndexData& data, const RunContext& ctx) {
     data.means.resize(data.cells.size() + 1);
     data.means.back().bricks = data.exemplar;
@@ -301,7 +296,7 @@ BlockIndexData buildBlockIndexData(std::shared_ptr<const BrickField> exemplar,
         for (float value : slab) data.largest = std::max(data.largest, std::abs(value));
     }
     const std::size_t varied = countVariedGroups(data, ctx);
-    // A varied position costs a node, twice its hash while they are sorted, and a sample of each mean.
+    // A varied position costs a node, twice its hash during sorting, and a sample of each mean.
     requireMemory(ctx,
                   double(varied) * kPositionGroup * kPositionGroup * kPositionGroup *
                       (64 + 4 * double(data.cells.size())),

@@ -1,5 +1,6 @@
 #pragma once
 #include "libvdbsynth/grid/dense_field.h"
+#include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/search/block_index.h"
 
 #include <algorithm>
@@ -15,8 +16,8 @@ struct PositionRun {
     std::uint32_t length = 0;
 };
 
-/// Nodes whose first positions are in one cube of side kNodeGroup are a group; groups in one cube of side
-/// kNodeCube follow each other and are bounded together.
+/// Nodes whose first positions are in one cube of side kNodeGroup form a group; groups in one cube of side
+/// kNodeCube are consecutive and bounded together.
 inline constexpr int kNodeGroup = 4, kNodeCube = 8;
 
 inline Index3 cubeCorner(const Index3& p) {
@@ -30,12 +31,11 @@ inline std::size_t placeInCube(const Index3& p) {
 struct BlockGroup {
     IndexBox box;                       // of the nodes' first positions
     std::uint32_t first = 0, last = 0;  // nodes
-    bool shared = false;                // some node stands for several positions, which may lie anywhere
+    bool shared = false;                // some node represents several positions, which may lie anywhere
     std::array<float, 8> low, high;
 };
 
-/// The field that bounds of one level are read from: in bricks, or as one array where nearly all of it
-/// varies.
+/// The field that bounds of one level are read from: in bricks, or as one array if nearly all of it varies.
 struct LevelField {
     std::shared_ptr<const BrickField> bricks;  ///< null where `dense` is not empty
     DenseField dense;                          ///< kNodeCube voxels longer than the field along each axis
@@ -51,7 +51,7 @@ struct LevelField {
 /// The search tree as flat arrays, read by block_index.cpp and built by block_index_build.cpp.
 struct BlockIndexData {
     std::shared_ptr<const BrickField> exemplar;
-    std::shared_ptr<const BrickField> maskMeans;  // mean of the mask over each block; null: all blocks count
+    std::shared_ptr<const BrickField> maskMeans;  // mean of the mask over each block; null: all are eligible
     int block = 0;
     float largest = 0;              // largest |sample|
     IndexBox positions;             // of block minimum corners
@@ -63,17 +63,10 @@ struct BlockIndexData {
     std::vector<std::uint32_t> memberBegin;  // [nodes + 1] into members
     std::vector<PositionRun> members;        // further positions of shared nodes, ascending
 
-    Index3 positionOf(std::uint64_t number) const {
-        const std::uint64_t ny = std::uint64_t(positions.size().y), nz = std::uint64_t(positions.size().z);
-        return {int(number / nz / ny), int(number / nz % ny), int(number % nz)};
-    }
-    std::uint64_t numberOf(const Index3& p) const {
-        return (std::uint64_t(p.x) * std::uint64_t(positions.size().y) + std::uint64_t(p.y)) *
-                   std::uint64_t(positions.size().z) +
-               std::uint64_t(p.z);
-    }
+    Index3 positionOf(std::uint64_t number) const { return latticeVoxel(number, positions.size()); }
+    std::uint64_t numberOf(const Index3& p) const { return latticeIndex(p, positions.size()); }
     Index3 position(std::uint32_t node) const { return positionOf(nodes[node]); }
-    /// blockCost, from what is quickest to read.
+    /// blockCost, from the representation that is fastest to read.
     double cost(const Index3& position, const BlockQuery& query, std::int64_t known, double giveUp) const;
     bool isShared(std::uint32_t node) const { return memberBegin[node] != memberBegin[node + 1]; }
     bool eligible(const Index3& p) const;

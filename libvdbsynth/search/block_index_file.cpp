@@ -12,13 +12,13 @@
 namespace vdbsynth {
 namespace {
 
-constexpr std::uint64_t kFormat = 0x3258444942445655ull;  // changes with whatever the arrays mean
+constexpr std::uint64_t kFormat = 0x3258444942445655ull;  // changes with the meaning of the arrays
 
 struct Header {
     std::uint64_t format = kFormat, nodes = 0, members = 0, groups = 0, check = 0;
 };
 
-// Calls each(vector) for everything that is kept, in the file's order.
+// Calls each(vector) for everything that is stored, in the file's order.
 template <typename Data, typename Each>
 void forArrays(Data& data, Each&& each) {
     each(data.nodes);
@@ -49,7 +49,7 @@ void read(std::ifstream& file, const std::string& path, void* to, std::size_t by
     if (std::size_t(file.gcount()) != bytes) refuse(path, "is truncated");
 }
 
-// What a search relies on, so that no file can lead it out of its arrays.
+// The invariants of a search, so that no file can lead it out of its arrays.
 bool consistent(const BlockIndexData& data) {
     const std::uint64_t positions = std::uint64_t(data.positions.volume());
     std::uint32_t expected = 0;
@@ -100,7 +100,7 @@ bool readBlockIndex(const std::string& path, BlockIndexData& data) {
     if (!file) throw Error(ErrorCode::Io, path + ": cannot be read");
     Header header;
     read(file, path, &header, sizeof header);
-    if (header.format != kFormat) refuse(path, "is no block index of this version");
+    if (header.format != kFormat) refuse(path, "is not a block index of this version");
     const std::uint64_t size = std::filesystem::file_size(path, ignored), most = size / 2;
     if (ignored) throw Error(ErrorCode::Io, path + ": cannot be read");
     if (header.nodes == 0 || header.nodes > most || header.members > most || header.groups > most)
@@ -113,7 +113,7 @@ bool readBlockIndex(const std::string& path, BlockIndexData& data) {
         sizeof in.memberBegin[0] + header.members * sizeof(PositionRun) + header.groups * sizeof(BlockGroup);
     if (size != needed)
         refuse(path, "has " + std::to_string(size) + " bytes, not the " + std::to_string(needed) +
-                         " its header speaks of");
+                         " of its header");
     in.nodes.resize(std::size_t(header.nodes));
     in.places.resize(std::size_t(header.nodes));
     in.memberBegin.resize(std::size_t(header.nodes) + 1);

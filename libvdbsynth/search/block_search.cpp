@@ -15,6 +15,14 @@ struct SurvivingCube {
     std::size_t begin, end;
 };
 
+// Invariants:
+// - every position of mCandidates is in mBest, or was excluded by a bound above pruneAbove() at that time (a
+// limit
+//   only falls, so it stays excluded), or belongs to a group or node that is still to be opened;
+// - mGroups holds groups with their bounds, cube by cube; mNodes the nodes of the cube that is being opened;
+//   mSurvivors the nodes that the present level left, cube by cube, mBefore those of the level before;
+// - bounds never exceed the exact cost (mMargin covers roundings), so the answer is exact for any order;
+// - mWork counts comparisons; above mMostWork the search is given up and its partial answer is not used.
 class BoundedSearch {
 public:
     BoundedSearch(const BlockIndexData& data, const BlockQuery& query, const BlockSearchOptions& options,
@@ -29,7 +37,7 @@ public:
           mBefore(scratch.before),
           mBest(options.count),
           mMostWork(mostWork),
-          mSlack(1 / ((1 + options.tolerance) * (1 + options.tolerance))),
+          mPruneShare(1 / ((1 + options.tolerance) * (1 + options.tolerance))),
           mKnown(countKnown(query.known, data.block)) {
         scratch.groups.clear();
         mNodes.clear();
@@ -41,11 +49,12 @@ public:
         float largest = data.largest;
         for (std::int64_t i = 0; i < std::int64_t(data.block) * data.block * data.block; ++i)
             if (!query.known || query.known[i]) largest = std::max(largest, std::abs(query.samples[i]));
-        mMargin = 6e-7f * largest;  // roundings to float, of a mean here and of those in the pyramid
+        mMargin = 6e-7f * largest;  // roundings to float, of a mean here and in the pyramid
     }
 
-    // Coarse to fine: what a level leaves is bounded by the next one, cube by cube, those with the least
-    // bound first. The node with the least bound so far is compared at once, so that the limit falls early.
+    // Coarse to fine: positions that a level leaves are bounded by the next one, cube by cube, those
+    // with the least bound first. The node with the least bound so far is compared immediately, so
+    // that the limit falls early.
     PartialSearch run() {
         if (mCandidates.empty()) return {};
         if (mKnown == 0) return {firstPositions(), true};
@@ -64,13 +73,13 @@ public:
 
 private:
     // Exact: a bound equal to the limit is still followed, the tie goes by position.
-    double pruneAbove() const { return mBest.limit() * mSlack; }
+    double pruneAbove() const { return mBest.limit() * mPruneShare; }
 
     bool worthIt() const { return mWork <= mMostWork; }
 
     double cost(const Index3& position) {
         ++mCounts.exact;
-        mWork += double(mKnown);  // most are given up early
+        mWork += double(mKnown);  // most are abandoned early
         return mData.cost(position, mQuery, mKnown, mBest.limit());
     }
 
@@ -85,7 +94,7 @@ private:
         const LevelBound bounds(level, mMargin);
         std::vector<SurvivingCube> all = boundGroups(level, bounds), opened;
         probe(all, bounds);
-        // Every sixteenth first, by which the work of all can be told.
+        // Every sixteenth first, to estimate the work of all.
         const double before = mWork;
         for (std::size_t offset = 0; offset < kSample; ++offset) {
             for (std::size_t i = offset; i < all.size(); i += kSample) {
@@ -100,7 +109,7 @@ private:
         return opened;
     }
 
-    // Cubes with the groups in them that may hold the answer, those with the least bound first.
+    // Cubes with the groups that may contain the answer, those with the least bound first.
     std::vector<SurvivingCube> boundGroups(const QueryLevel& level, const LevelBound& bounds) {
         std::vector<SurvivingCube> cubes;
         std::array<float, 8> mean{}, known{};
@@ -129,7 +138,7 @@ private:
         return cubes;
     }
 
-    // Follows the cubes with the least bounds all the way down, for a limit that leaves little to do.
+    // Follows the cubes with the least bounds to the end, for a limit that leaves little work.
     void probe(const std::vector<SurvivingCube>& cubes, const LevelBound& coarsest) {
         std::vector<SurvivingCube> few;
         for (std::size_t i = 0; i < std::min(cubes.size(), kProbedCubes); ++i) {
@@ -147,7 +156,7 @@ private:
         mLeast = std::numeric_limits<float>::infinity();
     }
 
-    // Bounds the nodes of a cube's groups; where there are many, without listing them first.
+    // Bounds the nodes of a cube's groups; if there are many, without listing them first.
     void openCube(SurvivingCube& cube, const LevelBound& level) {
         const LevelField& field = mData.means.front();
         const double prune = pruneAbove();
@@ -205,7 +214,7 @@ private:
         }
     }
 
-    // How far the query's eight means lie beyond the group's ranges; of means that are not known, nothing.
+    // Distance of the query's eight means from the group's ranges; unknown means contribute nothing.
     static float squaresBeyond(const BlockGroup& group, const std::array<float, 8>& mean,
                                const std::array<float, 8>& known) {
         float squares[8], sum = 0;
@@ -218,7 +227,7 @@ private:
         return sum;
     }
 
-    // Bounds the nodes in mNodes that are still worth it, and keeps as survivors those that stay so.
+    // Bounds the nodes in mNodes that are still candidates, and keeps those that remain as survivors.
     void boundNodes(const LevelBound& level, const LevelField& field, std::size_t few, SurvivingCube& cube) {
         const float limit = level.squaresFor(pruneAbove());
         Keeping keeping = beginKeeping(level, limit);
@@ -240,7 +249,7 @@ private:
         finishKeeping(keeping, cube);
     }
 
-    // Survivors of one cube while they are picked.
+    // Survivors of one cube during selection.
     struct Keeping {
         const LevelBound& level;
         float limit;
@@ -261,7 +270,7 @@ private:
         evaluate(keeping.best.node);
     }
 
-    // Sums over the samples themselves bound nothing that a comparison would not tell: few are left for that.
+    // Sums over the samples themselves bound nothing that a comparison would not find: few are left for that.
     std::vector<SurvivingCube> refine(std::vector<SurvivingCube> cubes, const LevelField& field, int cell,
                                       std::size_t few) {
         const QueryLevel level = queryLevel(mQuery, mData.block, cell, mKnown);
@@ -302,7 +311,7 @@ private:
         mWork += workTogether(nodes, double(__builtin_popcountll(rows)), means);
     }
 
-    // About what bounding these cubes by so many means would cost.
+    // Estimated cost of bounding these cubes by that many means.
     double workOfLevel(const std::vector<SurvivingCube>& cubes, std::size_t few, std::size_t means,
                        bool onlyCrowded) const {
         const double prune = pruneAbove();
@@ -347,9 +356,9 @@ private:
     }
 
     static constexpr std::size_t kProbedCubes = 8, kProbedNodes = 8, kSample = 16;
-    // Work of comparing a mean of one position alone, and of keeping count of a node.
+    // Work of comparing a mean of a single position, and of the bookkeeping for a node.
     static constexpr double kSingleWork = 10, kNodeWork = 8;
-    // Up to so many nodes of a cube are bounded one by one.
+    // Up to this many nodes of a cube are bounded one by one.
     static constexpr std::size_t kFewNodes = 48, kFewBlocks = 64;
 
     const BlockIndexData& mData;
@@ -360,7 +369,7 @@ private:
     std::vector<SurvivingNode>&mNodes, &mSurvivors, &mBefore;
     BestBlocks mBest;
     double mWork = 0, mMostWork;
-    double mSlack;  // a bound is worth following up to this share of the limit
+    double mPruneShare;  // a bound is worth following up to this share of the limit
     std::int64_t mKnown;
     IndexBox mCandidates;
     bool mRestricted = false;

@@ -1,4 +1,5 @@
 #pragma once
+// The search by bounds, behind BlockIndex::match: begin to read at block_index.h.
 #include "libvdbsynth/search/block_bound.h"
 #include "libvdbsynth/search/block_index_data.h"
 
@@ -14,11 +15,11 @@ namespace vdbsynth {
 class BestBlocks {
 public:
     explicit BestBlocks(int count) : mCount(std::size_t(count)) {}
-    /// What a bound must not exceed to be worth following. Equal costs still count: the tie goes by position.
+    /// The limit for bounds worth following. Equal costs still count: the tie goes by position.
     double limit() const {
         return mMatches.size() < mCount ? std::numeric_limits<double>::infinity() : mMatches.back().cost;
     }
-    /// False if the match was not good enough, and so none of the same cost at a later position is.
+    /// False if the match was not good enough; then none of the same cost at a later position is.
     bool add(const BlockMatch& match);
     const std::vector<BlockMatch>& matches() const { return mMatches; }
 
@@ -27,8 +28,8 @@ private:
     std::vector<BlockMatch> mMatches;
 };
 
-/// A node that may still be the best match. Made in place: a pair that is copied right after its halves were
-/// written stalls, which was a twelfth of a search.
+/// A node that may still be the best match. Constructed in place: copying a pair right after writing its
+/// halves stalls, which took a twelfth of a search.
 struct SurvivingNode {
     SurvivingNode() = default;
     SurvivingNode(float b, std::uint32_t n) : bound(b), node(n) {}
@@ -36,8 +37,8 @@ struct SurvivingNode {
     std::uint32_t node = 0;
 };
 
-/// What searches write to while they run; kept for the next one, since getting megabytes from the system for
-/// every query costs a tenth of it.
+/// Working memory of searches; kept for the next one, since allocating megabytes for every query takes a
+/// tenth of it.
 struct BlockSearchScratch {
     CubeBounds cube;
     std::vector<std::pair<float, std::uint32_t>> groups;  // bounds and numbers
@@ -49,10 +50,10 @@ struct PartialSearch {
     bool finished = true;
 };
 
-/// The search by bounds, as BlockIndex says it. Gives up where it sees that it will do more than a given
-/// amount of work, which does not depend on the machine.
-/// @param mostWork  in means compared where many positions are bounded at once, about half an instruction
-///                  each. Infinity: never gives up
+/// The search by bounds as described at BlockIndex. It gives up once it expects more than a given amount of
+/// work, which does not depend on the machine.
+/// @param mostWork  in means compared with many positions bounded at once, about half an instruction each.
+/// Infinity: never gives up
 PartialSearch searchByBounds(const BlockIndexData& data, const BlockQuery& query,
                              const BlockSearchOptions& options, double mostWork, BlockSearchCounts& counts,
                              BlockSearchScratch& scratch);

@@ -10,7 +10,7 @@
 namespace vdbsynth {
 namespace {
 
-// Positions that may be among the best of one query, by costs that may be off.
+// Positions that may be among the best of one query, by costs with an error bound.
 class Sieve {
 public:
     Sieve(const BlockIndexData& data, const SiftedQuery& sifted, int count)
@@ -67,7 +67,7 @@ private:
         mCrowded = mFound.size() > mMost / 2;
     }
 
-    // A cost that is off by no more than mOff is surely too high if it is over this.
+    // A cost with an error of at most mOff is certainly too high above this.
     void setHighest() {
         const double least =
             mLeast.size() == mCount ? double(mLeast.front()) + mOff : std::numeric_limits<double>::infinity();

@@ -8,14 +8,14 @@
 namespace vdbsynth {
 
 struct SiftedQuery {
-    const BlockQuery* query = nullptr;  ///< knows some sample; null: none
-    std::vector<BlockMatch> before;     ///< matches known already
+    const BlockQuery* query = nullptr;  ///< with at least one known sample; null: none
+    std::vector<BlockMatch> before;     ///< matches found already
 };
 
-/// The search by correlation: it sifts all positions, and those that are not surely dearer than the best are
-/// compared by blockCost. A search is not finished where over some thousand positions are left, as where
-/// many are equal: there bounds are the better way.
-/// @param queries  the second may be none
+/// The search by correlation: it sifts all positions, and blockCost compares those that may cost less than
+/// the best. It stays unfinished if over some thousand positions are left, as with many equal blocks: bounds
+/// are faster there.
+/// @param queries  the second may be empty
 /// @par Repeats yes; a finished answer equals matchBlocksLinearly's
 std::array<PartialSearch, 2> searchByCorrelation(const BlockIndexData& data,
                                                  const BlockCorrelation& correlation,

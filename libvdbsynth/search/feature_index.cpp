@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kLeaf = 12;
 
-// The nearest within a bound that holds from the beginning; of equally near ones the first row.
+// The nearest within an initial bound; of equally near ones the first row.
 class NearestWithin : public flann::ResultSet<float> {
 public:
     explicit NearestWithin(float bound) { mMatch.squared = bound; }
@@ -53,9 +53,9 @@ FeatureIndex::FeatureIndex(FeatureIndex&&) noexcept = default;
 FeatureIndex& FeatureIndex::operator=(FeatureIndex&&) noexcept = default;
 FeatureIndex::~FeatureIndex() = default;
 
-FeatureMatch FeatureIndex::nearest(const float* feature, float bound, float slack) const {
+FeatureMatch FeatureIndex::nearest(const float* feature, float bound, float epsilon) const {
     NearestWithin result(bound);
-    flann::SearchParams params(flann::FLANN_CHECKS_UNLIMITED, slack, false);
+    flann::SearchParams params(flann::FLANN_CHECKS_UNLIMITED, epsilon, false);
     mImpl->tree->findNeighbors(result, feature, params);
     return result.match();
 }

@@ -6,14 +6,14 @@
 
 namespace vdbsynth {
 
-/// A feature near another.
+/// The nearest row of a feature.
 struct FeatureMatch {
     std::int32_t row = -1;  ///< negative: none
     float squared = 0;      ///< squared Euclidean distance
 };
 
-/// Nearest-neighbour search over feature vectors: a single kd-tree (FLANN's KDTreeSingleIndex, the one of its
-/// indices that repeats).
+/// Nearest-neighbour search over feature vectors: a single kd-tree (FLANN's KDTreeSingleIndex, its only index
+/// with repeatable results).
 class FeatureIndex {
 public:
     /// @param rows  [count x dimension], count at least 1
@@ -23,11 +23,11 @@ public:
     FeatureIndex& operator=(FeatureIndex&&) noexcept;
     ~FeatureIndex();
 
-    /// A row nearer than `bound` (squared), the nearest one unless a slack allows another whose squared
-    /// distance is at most (1 + slack) times that. May be called from many threads at once.
-    /// @return row -1 where none is nearer than the bound
+    /// A row nearer than `bound` (squared): the nearest one, or with epsilon another whose squared distance
+    /// is at most (1 + epsilon) times that. May be called from many threads at once.
+    /// @return row -1 if none is nearer than the bound
     /// @par Repeats yes
-    FeatureMatch nearest(const float* feature, float bound, float slack = 0) const;
+    FeatureMatch nearest(const float* feature, float bound, float epsilon = 0) const;
 
     /// Squared distance to a row.
     float squaredTo(const float* feature, std::int32_t row) const;
@@ -40,7 +40,7 @@ private:
     std::unique_ptr<Impl> mImpl;
 };
 
-/// The oracle: the nearest row, the first of equally near ones, by a scan.
+/// The oracle: the nearest row, the first of equally near ones, by a linear scan.
 FeatureMatch nearestLinearly(const std::vector<float>& rows, std::size_t dimension, const float* feature);
 
 }  // namespace vdbsynth

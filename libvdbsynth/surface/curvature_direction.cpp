@@ -15,7 +15,7 @@ namespace {
 using Tensor = std::array<float, 6>;  // xx, xy, xz, yy, yz, zz
 
 constexpr int kRounds = 20;
-constexpr float kClear = 0.05f;  // of the mean strength; what is weaker says nothing
+constexpr float kClear = 0.05f;  // of the mean strength; weaker tensors are ignored
 
 Tensor outer(const Vec3f& d, float weight) {
     return {weight * d.x * d.x, weight * d.x * d.y, weight * d.x * d.z,
@@ -26,8 +26,8 @@ Vec3f times(const Tensor& t, const Vec3f& v) {
             t[2] * v.x + t[4] * v.y + t[5] * v.z};
 }
 
-// Larger eigenvalue's direction of the symmetric matrix (a b; b c), as an angle's cosine and sine, and by how
-// much it exceeds the other.
+// Direction of the larger eigenvalue of the symmetric matrix (a b; b c), as the cosine and sine of its angle,
+// and its excess over the other eigenvalue.
 struct Axis2 {
     float x, y, difference;
 };
@@ -104,7 +104,7 @@ std::vector<Vec3f> curvatureDirections(const SurfaceShell& shell, const RunConte
     });
     double mean = 0;
     for (float s : strength) mean += double(s) / double(strength.size());
-    // Signs from the clearest place outwards, always over the clearest edge.
+    // Signs propagate from the most distinct voxel, always over the most distinct edge.
     using Entry = std::pair<float, std::uint32_t>;
     const auto later = [](const Entry& a, const Entry& b) {
         return a.first != b.first ? a.first < b.first : a.second > b.second;

@@ -67,7 +67,7 @@ Graph coarser(const Graph& fine, std::vector<Index3>& places, std::vector<std::u
     return graph;
 }
 
-// Mean of a voxel's neighbours' directions, each turned into its tangent plane.
+// Mean of a voxel's neighbours' directions, each rotated into its tangent plane.
 Vec3f meanAround(const Graph& graph, std::size_t i) {
     Vec3f sum;
     for (std::uint32_t k = graph.begin[i]; k < graph.begin[i + 1]; ++k)
@@ -87,7 +87,7 @@ void diffuse(Graph& graph, const RunContext& ctx) {
     }
 }
 
-// Coarse to fine; on each the coarser one's directions are what unknown places begin with.
+// Coarse to fine; on each level unknown voxels start with the coarser level's directions.
 void diffuseAll(Graph& graph, std::vector<Index3> places, const RunContext& ctx) {
     const bool open = std::any_of(graph.fixed.begin(), graph.fixed.end(), [](char f) { return !f; });
     if (!open) return;
@@ -105,8 +105,8 @@ void diffuseAll(Graph& graph, std::vector<Index3> places, const RunContext& ctx)
     diffuse(graph, ctx);
 }
 
-// How flat a direction has to lie to be kept: as kTrusted says, or less on a part of the surface of which not
-// a quarter has it so flat: a slope, or where little is given.
+// Least sine of the angle to the normal of directions that are kept: kTrusted, or less on a component of the
+// surface with less than a quarter of such directions: a slope, or sparse input.
 std::vector<float> leastSines(const SurfaceShell& shell, const std::vector<float>& sine) {
     std::vector<float> least(shell.size(), -1);
     std::vector<std::uint32_t> part;
@@ -131,7 +131,7 @@ std::vector<float> leastSines(const SurfaceShell& shell, const std::vector<float
     return least;
 }
 
-// One place of each connected part of the voxels that are marked.
+// One voxel of each connected component of the marked voxels.
 std::vector<Vec3f> partsOf(const SurfaceShell& shell, std::vector<char> marked) {
     std::vector<Vec3f> places;
     std::vector<std::uint32_t> open;
@@ -177,10 +177,9 @@ DirectionField directionField(const SurfaceShell& shell, const std::vector<Vec3f
         ++field.known;
     }
     if (field.known == 0)
-        throw Error(
-            ErrorCode::Unusable,
-            "`direction`: says nothing about any place of the surface; it is along the normal everywhere, "
-            "or nowhere near the model");
+        throw Error(ErrorCode::Unusable,
+                    "`direction`: gives no direction on the surface: it is along the normal everywhere, or "
+                    "nowhere near the model");
     diffuseAll(graph, shell.table.voxels(), ctx);
     field.tangent.resize(shell.size());
     std::vector<char> singular(shell.size(), 0);
@@ -188,7 +187,7 @@ DirectionField directionField(const SurfaceShell& shell, const std::vector<Vec3f
         for (std::size_t i = begin; i < end; ++i) {
             const Vec3f& n = shell.normal[i];
             Vec3f t = inTangentPlane(graph.direction[i], n);
-            // A part of the surface that nothing reaches takes any tangent.
+            // A component without any given direction takes any tangent.
             if (length(t) < 1e-3f)
                 t = inTangentPlane(std::abs(n.x) < 0.7f ? Vec3f{1, 0, 0} : Vec3f{0, 1, 0}, n);
             field.tangent[i] = normalized(t);

@@ -7,20 +7,20 @@ namespace vdbsynth {
 
 /// Unit tangents on a surface's shell.
 struct DirectionField {
-    std::vector<Vec3f> tangent;        ///< length 1, at right angles to the normal, one a shell voxel
+    std::vector<Vec3f> tangent;        ///< length 1, perpendicular to the normal, one per shell voxel
     std::size_t known = 0;             ///< voxels whose direction was given, not diffused
-    std::vector<Vec3f> singularities;  ///< one place in each part where no direction goes on
+    std::vector<Vec3f> singularities;  ///< one position in each region without a continuous direction
 };
 
-/// Directions everywhere from those given somewhere [turk2001]: what is given is turned into the tangent
-/// plane and stays; the rest takes the mean of its neighbours, again and again, coarse to fine. Only what
-/// is given within 35 degrees of the surface stays: an axis that meets a surface more steeply says little
-/// there, and its projection has a singularity at every bump (53 on a bunny, 10 so). On a part of the surface
-/// of which less than a quarter is so flat, 90 % of the sine that a quarter has is enough; within 10 degrees
-/// of the normal nothing is. A place is singular where the mean of a voxel's and its neighbours' directions
-/// is shorter than 0.7.
-/// @param given  any length, 0 where nothing is given; one a shell voxel
-/// @throw Error Unusable (nothing is given anywhere, or only along normals)
+/// Extends directions given in some voxels to all of them [turk2001]: given directions are projected to the
+/// tangent plane and stay; the others are averaged over their neighbours in rounds, coarse to fine. Only
+/// directions within 35 degrees of the surface are used: an axis that meets a surface more steeply determines
+/// little there, and its projection has a singularity at every bump (53 on a bunny, 10 with the limit). On a
+/// component of the surface with less than a quarter of such directions, the limit is 90 % of the sine that
+/// its best quarter reaches; directions within 10 degrees of the normal are never used. A voxel is singular
+/// where the mean of its own and its neighbours' directions is shorter than 0.7.
+/// @param given  any length, 0 where none is given; one per shell voxel
+/// @throw Error Unusable (no direction is given, or only along normals)
 /// @par Cost    O(shell voxels * rounds of averaging)
 /// @par Repeats same bits for any number of threads
 DirectionField directionField(const SurfaceShell& shell, const std::vector<Vec3f>& given,

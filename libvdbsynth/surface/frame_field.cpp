@@ -1,6 +1,7 @@
 #include "libvdbsynth/surface/frame_field.h"
 
 #include "libvdbsynth/grid/field_sampling.h"
+#include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/math/trigonometry.h"
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 namespace vdbsynth {
 namespace {
 
-constexpr float kReach = 1.9f;    // [voxels] of shell voxels that have a say
+constexpr float kReach = 1.9f;    // [voxels] of shell voxels that are averaged
 constexpr float kSameSide = 6.f;  // [voxels] of sweep distance; more is beyond a cut
 
 }  // namespace
@@ -39,7 +40,8 @@ Vec3f rotationBetween(const Frame& from, const Frame& to) {
     const double sine2 = length(twist), cosine2 = m[0][0] + m[1][1] + m[2][2] - 1;
     if (sine2 > 1e-4) return cast<float>(twist * (arcTangent(sine2, cosine2) / sine2));
     if (cosine2 > 0) return {0, 0, 0};
-    // Half a turn: m = 2 a a^T - 1, of whose columns the one with the largest diagonal is clearest.
+    // A half rotation: m = 2 a a^T - 1, of whose columns the one with the largest
+    // diagonal is the most accurate.
     const int clear = m[0][0] >= m[1][1] && m[0][0] >= m[2][2] ? 0 : m[1][1] >= m[2][2] ? 1 : 2;
     Vec3d axis{m[0][clear], m[1][clear], m[2][clear]};
     axis[clear] += 1;
@@ -64,18 +66,18 @@ bool FrameField::at(const Vec3f& point, Frame& frame, float& sweep) const {
     int count = 0;
     float nearest = 0;
     std::size_t first = 0;
-    for (int k = 0; k < 64; ++k) {
-        const std::int32_t i = mShell.table.find(base + Index3{k / 16 - 1, k / 4 % 4 - 1, k % 4 - 1});
-        if (i < 0) continue;
+    forEachVoxel(IndexBox::cube(base - Index3{1, 1, 1}, 4), [&](const Index3& p) {
+        const std::int32_t i = mShell.table.find(p);
+        if (i < 0) return;
         const Vec3f offset = mShell.point[std::size_t(i)] - foot;
         const float weight = kReach - length(offset);
-        if (weight <= 0) continue;
+        if (weight <= 0) return;
         near[count++] = {std::size_t(i), weight * weight};
         if (weight > nearest) {
             nearest = weight;
             first = std::size_t(i);
         }
-    }
+    });
     if (count == 0) return false;
     Vec3f direction, normal;
     float sum = 0, weights = 0;

@@ -3,6 +3,7 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/grid/field_sampling.h"
+#include "libvdbsynth/math/lattice.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,7 @@ Vec3f projectToSurface(const BrickField& distance, const Vec3f& point) {
     for (int step = 0; step < 2; ++step) {
         const Vec3f gradient = sampleGradient(distance, p);
         const float squared = dot(gradient, gradient);
-        // Beside a medial axis the gradient is short and a full step would lead away.
+        // Next to a medial axis the gradient is short and a full step would diverge.
         if (squared < 0.04f) break;
         p = p - gradient * (sampleTrilinear(distance, p) / std::max(squared, 0.25f));
     }
@@ -27,10 +28,8 @@ void connect(SurfaceShell& shell, const RunContext& ctx) {
     std::vector<std::vector<std::uint32_t>> near(shell.size());
     parallelFor(ctx, shell.size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-            for (int k = 0; k < 27; ++k) {
-                if (k == 13) continue;
-                const std::int32_t j =
-                    shell.table.find(shell.table[i] + Index3{k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1});
+            for (const Index3& step : kAllNeighbours) {
+                const std::int32_t j = shell.table.find(shell.table[i] + step);
                 if (j >= 0 && dot(shell.normal[i], shell.normal[std::size_t(j)]) > 0)
                     near[i].push_back(std::uint32_t(j));
             }

@@ -7,7 +7,7 @@
 namespace vdbsynth {
 namespace {
 
-constexpr double kJump = 2;       // [voxels] by which a pair may be off and still count
+constexpr double kJump = 2;       // [voxels] residual up to which a pair is used
 constexpr int kRounds = 60;       // of conjugate gradients, each time
 constexpr double kEnough = 1e-4;  // of the residual at the start
 
@@ -43,7 +43,8 @@ private:
         });
     }
 
-    // From the first voxel of each part outwards, each new one by the mean of what its neighbours say.
+    // From the first voxel of each component outwards, each new one by the mean of
+    // its neighbours' predictions.
     void grow() {
         mValue.assign(mShell.size(), 0);
         std::vector<char> seen(mShell.size(), 0), done(mShell.size(), 0);
@@ -72,7 +73,7 @@ private:
         }
     }
 
-    // Share of the pairs that are left out.
+    // Share of the excluded pairs.
     double leaveOutJumps() {
         each([&](std::size_t i) {
             for (std::uint32_t k = mShell.begin[i]; k < mShell.begin[i + 1]; ++k)
@@ -127,8 +128,8 @@ private:
 
     const SurfaceShell& mShell;
     const RunContext& mContext;
-    std::vector<float> mStep;   // what s should grow by, from i to its neighbour
-    std::vector<char> mCounts;  // whether the pair counts
+    std::vector<float> mStep;   // growth of s from i to its neighbour
+    std::vector<char> mCounts;  // whether the pair is used
     std::vector<double> mValue;
 };
 

@@ -4,6 +4,7 @@
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/base/random.h"
 #include "libvdbsynth/grid/pyramid.h"
+#include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/search/block_index.h"
 #include "libvdbsynth/synth/synthesis_passes.h"
 
@@ -18,7 +19,7 @@ constexpr std::uint32_t kFirstBlockPurpose = 0x66697273, kPaddingPurpose = 0x700
 using Fields = std::vector<std::shared_ptr<const BrickField>>;
 using Pass = SynthesisPass;
 
-// The field with samples of 256 values only, evenly over its range [lagae2004, section 4.1].
+// The field with 256 evenly spaced values over its range [lagae2004, section 4.1].
 BrickField quantized(const BrickField& field, const RunContext& ctx) {
     float limit = 0;
     std::vector<float> row(std::size_t(field.box().size().z));
@@ -72,22 +73,17 @@ public:
     BlockSynthesisStats takeStats() const { return mStats; }
 
 private:
-    // A target whose samples are drawn from the first exemplar, each for itself.
+    // A target whose samples are each drawn from the first exemplar.
     BrickField drawnSamples(const Pass& pass) const {
         const BrickField& exemplar = *pass.exemplars.front();
         const Index3 from = exemplar.box().size();
         const IndexBox target = IndexBox::fromSize(pass.target);
-        return BrickField::generate(target, mContext, [&](const IndexBox& brick, float* samples) {
-            for (int x = brick.min.x; x <= brick.max.x; ++x)
-                for (int y = brick.min.y; y <= brick.max.y; ++y) {
-                    const std::uint64_t row = (std::uint64_t(x) << 32) | std::uint64_t(y);
-                    for (int z = brick.min.z; z <= brick.max.z; ++z) {
-                        Random random(mContext.seed, row, kPaddingPurpose + std::uint32_t(z));
-                        *samples++ = exemplar.at({int(random.below(std::uint32_t(from.x))),
-                                                  int(random.below(std::uint32_t(from.y))),
-                                                  int(random.below(std::uint32_t(from.z)))});
-                    }
-                }
+        return BrickField::fromVoxels(target, mContext, [&](const Index3& p) {
+            const std::uint64_t row = (std::uint64_t(p.x) << 32) | std::uint64_t(p.y);
+            Random random(mContext.seed, row, kPaddingPurpose + std::uint32_t(p.z));
+            return exemplar.at({int(random.below(std::uint32_t(from.x))),
+                                int(random.below(std::uint32_t(from.y))),
+                                int(random.below(std::uint32_t(from.z)))});
         });
     }
 
@@ -96,8 +92,8 @@ private:
         std::int32_t exemplar = -1;
     };
 
-    // What a block is matched by.
-    struct Asked {
+    // Query data of a block.
+    struct BlockRequest {
         Index3 origin;
         std::vector<float> samples;
         std::vector<std::uint8_t> known;  // empty: everywhere
@@ -107,7 +103,7 @@ private:
     void walk(const Pass& pass, const std::vector<BlockIndex>& indices, bool seeded,
               const PatchMap* coarseMap, BrickField& field, PatchMap& map, const std::string& name) {
         const Index3 lattice = map.lattice();
-        Stage stage(mContext, name, std::size_t(lattice.x) * std::size_t(lattice.y) * std::size_t(lattice.z));
+        Stage stage(mContext, name, latticeCount(lattice));
         double costs = 0;
         for (int wave = 0; wave <= lattice.x + lattice.y + lattice.z - 3; ++wave) {
             std::vector<Index3> blocks;
@@ -137,33 +133,33 @@ private:
             open[std::size_t(axis)].assign(std::size_t(n), 0);
             for (int i = std::max(covered, 0); i < n; ++i) open[std::size_t(axis)][std::size_t(i)] = 1;
         }
-        std::vector<std::uint8_t> samples(std::size_t(n) * std::size_t(n) * std::size_t(n));
+        std::vector<std::uint8_t> samples(latticeCount({n, n, n}));
         std::size_t s = 0;
-        for (int i = 0; i < n; ++i)
-            for (int j = 0; j < n; ++j)
-                for (int k = 0; k < n; ++k)
-                    samples[s++] =
-                        open[0][std::size_t(i)] & open[1][std::size_t(j)] & open[2][std::size_t(k)];
+        forEachVoxel(IndexBox::cube({0, 0, 0}, n), [&](const Index3& p) {
+            samples[s++] = open[0][std::size_t(p.x)] & open[1][std::size_t(p.y)] & open[2][std::size_t(p.z)];
+        });
         return samples;
     }
 
-    // The blocks of a wave do not touch: all of them ask at once, exemplar by exemplar.
+    // The blocks of a wave do not touch: all of them are matched at once, exemplar by exemplar.
     std::vector<Found> matchWave(const Pass& pass, const std::vector<BlockIndex>& indices, bool seeded,
                                  const PatchMap* coarseMap, const BrickField& field, const PatchMap& map,
                                  const std::vector<Index3>& blocks) {
         std::vector<Found> found(blocks.size());
-        std::vector<Asked> asked(blocks.size());
+        std::vector<BlockRequest> requests(blocks.size());
         parallelFor(mContext, blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) asked[i] = ask(pass, seeded, field, map, blocks[i]);
+            for (std::size_t i = begin; i < end; ++i)
+                requests[i] = requestOf(pass, seeded, field, map, blocks[i]);
         });
         for (std::size_t e = 0; e < indices.size(); ++e) {
             std::vector<BlockQuery> queries;
             std::vector<std::size_t> of;
             for (std::size_t i = 0; i < blocks.size(); ++i) {
-                BlockQuery query = queryOf(asked[i], pass, indices[e]);
-                if (query.candidates.empty() || (asked[i].only >= 0 && int(e) != asked[i].only)) continue;
+                BlockQuery query = queryOf(requests[i], pass, indices[e]);
+                if (query.candidates.empty() || (requests[i].only >= 0 && int(e) != requests[i].only))
+                    continue;
                 if (!seeded && blocks[i] == Index3{0, 0, 0}) {
-                    if ((asked[i].only >= 0 || e == 0) && drawFirst(indices[e], query, found[i].match))
+                    if ((requests[i].only >= 0 || e == 0) && drawFirst(indices[e], query, found[i].match))
                         found[i].exemplar = std::int32_t(e);
                     continue;
                 }
@@ -184,7 +180,7 @@ private:
         }
         for (std::size_t i = 0; i < blocks.size(); ++i) {
             if (found[i].exemplar >= 0) continue;
-            const Index3& at = asked[i].origin;
+            const Index3& at = requests[i].origin;
             throw Error(ErrorCode::Unusable, "no eligible source for the block at " + std::to_string(at.x) +
                                                  "," + std::to_string(at.y) + "," + std::to_string(at.z) +
                                                  "; widen `exemplarMask` or raise `drift`");
@@ -192,30 +188,31 @@ private:
         return found;
     }
 
-    Asked ask(const Pass& pass, bool seeded, const BrickField& field, const PatchMap& map,
-              const Index3& l) const {
+    BlockRequest requestOf(const Pass& pass, bool seeded, const BrickField& field, const PatchMap& map,
+                           const Index3& l) const {
         const int n = pass.block;
-        Asked asked;
-        asked.origin = {map.origin(0, l.x), map.origin(1, l.y), map.origin(2, l.z)};
-        asked.samples.resize(std::size_t(n) * std::size_t(n) * std::size_t(n));
-        field.readBox(asked.origin, {n, n, n}, asked.samples.data());
+        BlockRequest request;
+        request.origin = {map.origin(0, l.x), map.origin(1, l.y), map.origin(2, l.z)};
+        request.samples.resize(latticeCount({n, n, n}));
+        field.readBox(request.origin, {n, n, n}, request.samples.data());
         if (!seeded) {
-            asked.known = openSamples(map, l);
-            for (std::uint8_t& k : asked.known) k = !k;
+            request.known = openSamples(map, l);
+            for (std::uint8_t& k : request.known) k = !k;
         }
-        asked.only = exemplarAt(mOptions, pass, asked.origin + Index3{n / 2, n / 2, n / 2});
-        return asked;
+        request.only = exemplarAt(mOptions, pass, request.origin + Index3{n / 2, n / 2, n / 2});
+        return request;
     }
 
-    BlockQuery queryOf(const Asked& asked, const Pass& pass, const BlockIndex& index) const {
+    BlockQuery queryOf(const BlockRequest& request, const Pass& pass, const BlockIndex& index) const {
         BlockQuery query;
-        query.samples = asked.samples.data();
-        query.known = asked.known.empty() ? nullptr : asked.known.data();
-        query.candidates = sourceBox(mOptions, pass, index.exemplar().box().size(), pass.block, asked.origin);
+        query.samples = request.samples.data();
+        query.known = request.known.empty() ? nullptr : request.known.data();
+        query.candidates =
+            sourceBox(mOptions, pass, index.exemplar().box().size(), pass.block, request.origin);
         return query;
     }
 
-    // The first block of all: any eligible one, by the seed.
+    // The first block of all: any eligible one, drawn by the seed.
     bool drawFirst(const BlockIndex& index, const BlockQuery& query, BlockMatch& found) {
         for (std::uint64_t attempt = 0; attempt < 256; ++attempt) {
             Random random(mContext.seed, attempt, kFirstBlockPurpose);
@@ -235,7 +232,7 @@ private:
         return !matches.empty();
     }
 
-    // Where the neighbours' sources and the coarser pass would go on.
+    // Positions that continue the neighbours' sources and the coarser pass.
     void addHints(const PatchMap& map, const PatchMap* coarseMap, const Index3& l, std::int32_t exemplar,
                   std::vector<Index3>& hints) const {
         for (int axis = 0; axis < 3; ++axis) {
@@ -270,7 +267,7 @@ private:
         const std::size_t at = map.index(l);
         map.source[at] = found.match.position;
         map.exemplar[at] = found.exemplar;
-        std::vector<float> samples(std::size_t(n) * std::size_t(n) * std::size_t(n));
+        std::vector<float> samples(latticeCount({n, n, n}));
         pass.exemplars[std::size_t(found.exemplar)]->readBox(found.match.position, {n, n, n}, samples.data());
         const std::vector<std::uint8_t> open = openSamples(map, l);
         field.writeBox({map.origin(0, l.x), map.origin(1, l.y), map.origin(2, l.z)}, {n, n, n},

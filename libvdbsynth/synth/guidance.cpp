@@ -55,8 +55,8 @@ GuideScales guideScales(const BlockSynthesisOptions& options, std::size_t passes
     const double variance = varianceOf(options.exemplarGuides);
     if (!(variance > 1e-20) || !std::isfinite(variance))
         throw Error(ErrorCode::Unusable,
-                    "`exemplarGuides`: has one value throughout the exemplar, or values that are no numbers; "
-                    "give a grid that varies");
+                    "`exemplarGuides`: is constant over the exemplar, or holds NaN or infinite values; give "
+                    "a grid that varies");
     scales.weight = float(double(options.guideWeight) / variance);
     scales.target.push_back(*options.guide);
     scales.exemplars.emplace_back();

@@ -6,12 +6,12 @@
 
 namespace vdbsynth {
 
-/// The scalars that guide one pass: sources are preferred where the exemplar's scalar is as the target's
-/// [hertzmann2001, the correspondence map of texture by numbers]. Compared are means over the eight octants
-/// of a patch, so that a scalar's own noise does not count.
+/// The scalars that guide one pass: sources whose exemplar scalar is close to the target's are preferred
+/// [hertzmann2001, the correspondence map of texture by numbers]. Means over the eight octants of a patch are
+/// compared, so that the scalar's noise has no effect.
 class Guidance {
 public:
-    /// Nothing guides.
+    /// No guidance.
     Guidance() = default;
     /// @param target, exemplars  the scalar at the pass's scale; boxes of the pass's target and exemplars
     /// @param weight             cost [voxels^2] of a squared difference of 1
@@ -19,7 +19,7 @@ public:
              const RunContext& ctx);
 
     bool empty() const { return mExemplars.empty(); }
-    /// [voxels^2] What the source at a place costs the patch that begins at `origin`.
+    /// [voxels^2] Guidance cost of a source position for the patch that begins at `origin`.
     float cost(const Index3& origin, std::size_t exemplar, const Index3& place) const;
 
 private:
@@ -36,7 +36,7 @@ struct GuideScales {
     float weight = 0;
 };
 
-/// @throw Error Unusable (the exemplars' scalar is the same everywhere or not finite)
+/// @throw Error Unusable (the exemplars' scalar is constant or not finite)
 GuideScales guideScales(const BlockSynthesisOptions& options, std::size_t passes, const RunContext& ctx);
 
 }  // namespace vdbsynth

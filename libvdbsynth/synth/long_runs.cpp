@@ -1,17 +1,19 @@
 #include "libvdbsynth/synth/long_runs.h"
 
+#include "libvdbsynth/math/lattice.h"
+
 #include <algorithm>
 
 namespace vdbsynth {
 namespace {
 
-// Patches of one run after another, by flooding the lattice.
+// Finds the patches of one run after another, by flooding the lattice.
 class Runs {
 public:
     Runs(const PatchMap& map, const std::vector<std::uint8_t>& counted)
         : mMap(map), mLattice(map.lattice()), mOpen(counted) {}
 
-    // The run that patch i belongs to; empty if it was given before.
+    // The run that patch i belongs to; empty if it was returned before.
     const std::vector<std::size_t>& take(std::size_t i) {
         mRun.clear();
         join(i);
@@ -28,14 +30,12 @@ private:
 
     void flood(std::size_t i) {
         const Index3 place = mMap.place(i), shift = shiftOf(i);
-        const std::ptrdiff_t steps[3] = {std::ptrdiff_t(mLattice.y) * mLattice.z, mLattice.z, 1};
-        for (int axis = 0; axis < 3; ++axis)
-            for (const int side : {-1, 1}) {
-                const int to = place[axis] + side;
-                if (to < 0 || to >= mLattice[axis]) continue;
-                const std::size_t k = std::size_t(std::ptrdiff_t(i) + side * steps[axis]);
-                if (mMap.exemplar[k] == mMap.exemplar[i] && shiftOf(k) == shift) join(k);
-            }
+        for (const Index3& step : kFaceNeighbours) {
+            const Index3 to = place + step;
+            if (!IndexBox::fromSize(mLattice).contains(to)) continue;
+            const std::size_t k = latticeIndex(to, mLattice);
+            if (mMap.exemplar[k] == mMap.exemplar[i] && shiftOf(k) == shift) join(k);
+        }
     }
 
     Index3 shiftOf(std::size_t i) const { return mMap.source[i] - mMap.originOf(mMap.place(i)); }
@@ -46,7 +46,7 @@ private:
     std::vector<std::size_t> mRun;
 };
 
-// Marks all but the `most` patches of a run that are nearest to its middle.
+// Marks all except the `most` patches of a run that are nearest to its middle.
 void markOuter(const PatchMap& map, const std::vector<std::size_t>& run, std::size_t most,
                std::vector<std::uint8_t>& marks) {
     std::int64_t sum[3] = {};

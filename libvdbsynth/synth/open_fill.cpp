@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/search/block_index.h"
 
 #include <algorithm>
@@ -11,7 +12,7 @@
 namespace vdbsynth {
 namespace {
 
-// The blocks that still have open samples, and how many samples each knows.
+// The blocks that still have open samples, with their numbers of known samples.
 class Frontier {
 public:
     Frontier(const PatchMap& map, const BrickField& open) : mMap(map) {
@@ -24,7 +25,7 @@ public:
     bool empty() const { return mKnown.empty(); }
     std::size_t size() const { return mKnown.size(); }
 
-    // Takes the block that knows most, the first of several.
+    // Takes the block with the most known samples, the first of several.
     std::size_t take() {
         const auto best = std::max_element(mKnown.begin(), mKnown.end(), [](const auto& a, const auto& b) {
             return a.second != b.second ? a.second < b.second : a.first > b.first;
@@ -34,7 +35,7 @@ public:
         return i;
     }
 
-    // Counts again what a filled block overlaps; blocks that know all are done.
+    // Recounts the blocks that a filled block overlaps; blocks without open samples are done.
     void update(std::size_t filled, const BrickField& open) {
         const Index3 at = mMap.originOf(mMap.place(filled));
         for (auto& [i, known] : mKnown) {
@@ -68,7 +69,7 @@ struct Filling {
     std::int32_t exemplar = 0;
 };
 
-// The best match of all exemplars for what a block knows.
+// The best match of all exemplars for a block's known samples.
 Filling bestFilling(const std::vector<BlockIndex>& indices, const std::vector<float>& samples,
                     const std::vector<std::uint8_t>& known) {
     std::optional<Filling> best;
@@ -82,7 +83,7 @@ Filling bestFilling(const std::vector<BlockIndex>& indices, const std::vector<fl
     }
     if (!best)
         throw Error(ErrorCode::Unusable,
-                    "nothing left of the exemplar to fill the hole from; give an EXEMPLAR");
+                    "the exemplar has nothing left to fill the hole from; give an EXEMPLAR");
     return *best;
 }
 
@@ -105,8 +106,7 @@ PatchMap fillOpen(const SynthesisPass& pass, const std::vector<const BrickField*
     BrickField still = open;
     Frontier frontier(map, still);
     const Index3 side{pass.block, pass.block, pass.block};
-    std::vector<float> samples(std::size_t(side.x) * std::size_t(side.y) * std::size_t(side.z)),
-        openSamples(samples.size());
+    std::vector<float> samples(latticeCount(side)), openSamples(samples.size());
     std::vector<std::uint8_t> known(samples.size()), unknown(samples.size());
     const std::vector<float> none(samples.size(), 0.f);
     std::vector<std::uint8_t> matched(map.source.size(), 0);

@@ -5,14 +5,14 @@
 
 namespace vdbsynth {
 
-/// Fills the open samples of a pass's field with what fits best to the known ones [lagae2004, section 6, left
-/// open]: of all blocks that have open samples the one that knows most comes next, its exact best match under
-/// the mask of what is known fills the rest, until nothing is open.
-/// @param field  [the pass's target] known samples count, open ones are replaced
+/// Fills the open samples of a pass's field with the best match for the known ones [lagae2004, section 6,
+/// left open]: of all blocks with open samples, the one with the most known samples comes next; its exact
+/// best match under the mask of known samples fills the rest, until nothing is open.
+/// @param field  [the pass's target] known samples are compared, open ones are replaced
 /// @param open   1 where a sample is open, else 0; the same box
 /// @param masks  for each exemplar, null or missing: none
-/// @return the lattice of blocks, half a block apart, with the source of every block that was matched; blocks
-///         without open samples have the source of the first that was
+/// @return the lattice of blocks, half a block apart, with the source of every matched block; blocks without
+/// open samples have the source of the first matched block
 /// @throw Error Unusable (no block of any exemplar is eligible), Memory, Cancelled
 /// @par Cost    O(open blocks * one search), for the coarsest pass   @par Repeats same bits for any threads
 PatchMap fillOpen(const SynthesisPass& pass, const std::vector<const BrickField*>& masks,

@@ -3,6 +3,7 @@
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/base/random.h"
 #include "libvdbsynth/grid/pyramid.h"
+#include "libvdbsynth/math/lattice.h"
 
 #include <algorithm>
 #include <limits>
@@ -10,18 +11,17 @@
 namespace vdbsynth {
 namespace {
 
-// Some of the places whose patches lie inside a mask, evenly through all of them.
+// Some of the positions whose patches lie inside a mask, evenly spread over all of them.
 std::vector<Index3> placesInside(const BrickField& maskMeans, int side) {
     constexpr std::size_t kMost = 64;
     std::vector<Index3> all, some;
     const Index3 last = maskMeans.box().max - Index3{side - 1, side - 1, side - 1};
     float value;
-    // Without a mask every place is inside.
+    // Without a mask every position is inside.
     if (maskMeans.constantIn(maskMeans.box(), value) && value == 1.f) return {{0, 0, 0}};
-    for (int x = 0; x <= last.x; ++x)
-        for (int y = 0; y <= last.y; ++y)
-            for (int z = 0; z <= last.z; ++z)
-                if (maskMeans.inside({x, y, z}) == 1.f) all.push_back({x, y, z});
+    forEachVoxel({{0, 0, 0}, last}, [&](const Index3& p) {
+        if (maskMeans.inside(p) == 1.f) all.push_back(p);
+    });
     const std::size_t count = std::min(kMost, all.size());
     for (std::size_t i = 0; i < count; ++i) some.push_back(all[i * all.size() / count]);
     return some;
@@ -40,7 +40,7 @@ std::vector<std::size_t> repeatsOf(const SynthesisPass& pass, const BlockSynthes
             const int around = options.around[axis] / pass.scale, period = pass.target[axis] - 2 * around;
             const int origin = map.origin(axis, l[axis]);
             const int inside = (origin - around + period * 4) % period + around;
-            // The last patch may end with the target off the lattice; it lies beyond what tiles.
+            // The last patch may end with the target, off the lattice; it lies beyond the tile.
             if (origin % map.stride == 0) l[axis] = inside / map.stride;
         }
         repeats[i] = map.index(l);
@@ -48,20 +48,20 @@ std::vector<std::size_t> repeatsOf(const SynthesisPass& pass, const BlockSynthes
     return repeats;
 }
 
-// Adds an exemplar and what may be a source in it.
+// Adds an exemplar and its possible sources.
 void addExemplar(PatchLevel& level, const PatchMap& map, const BrickField& exemplar, const BrickField* mask,
                  const RunContext& ctx) {
     level.exemplars.push_back(denseField(exemplar));
     level.maskMeans.push_back(mask ? slidingMean(*mask, map.block, ctx) : BrickField(exemplar.box(), 1.f));
     level.fallbacks.push_back(placesInside(level.maskMeans.back(), map.block));
-    const Index3 size = exemplar.box().size();
+    const Index3 last = exemplar.box().size() - Index3{map.block, map.block, map.block};
     double varied = 0;
     float value;
-    for (int x = 0; x + map.block <= size.x; x += map.stride)
-        for (int y = 0; y + map.block <= size.y; y += map.stride)
-            for (int z = 0; z + map.block <= size.z; z += map.stride)
-                varied += level.maskMeans.back().inside({x, y, z}) == 1.f &&
-                          !exemplar.constantIn(IndexBox::cube({x, y, z}, map.block), value);
+    const auto count = [&](const Index3& p) {
+        varied += level.maskMeans.back().inside(p) == 1.f &&
+                  !exemplar.constantIn(IndexBox::cube(p, map.block), value);
+    };
+    forEachVoxel({{0, 0, 0}, last}, count, map.stride);
     level.surfacePlaces.push_back(std::max(1.0, varied));
 }
 
@@ -76,7 +76,7 @@ PatchLevel patchLevel(const SynthesisPass& pass, const BlockSynthesisOptions& op
     for (std::size_t e = 0; e < pass.exemplars.size(); ++e)
         addExemplar(level, map, *pass.exemplars[e], e < masks.size() ? masks[e] : nullptr, ctx);
     const Index3 half{map.block / 2, map.block / 2, map.block / 2};
-    for (std::size_t i = 0; options.which && i < map.source.size(); ++i)
+    for (std::size_t i = 0; options.exemplarMap && i < map.source.size(); ++i)
         level.only.push_back(exemplarAt(options, pass, map.originOf(map.place(i)) + half));
     level.repeats = repeatsOf(pass, options, map);
     for (std::size_t i = 0; open && i < map.source.size(); ++i) {
@@ -132,7 +132,7 @@ void liftSources(const PatchLevel& level, const PatchMap& coarse, int factor, Pa
                 middle[axis] = std::min((origin[axis] + map.block / 2) / factor, coarse.target[axis] - 1);
             const Index3 strongest = strongestBlock(coarse, middle);
             const std::size_t from = coarse.index(strongest);
-            if (!level.allows(i, coarse.exemplar[from])) continue;  // keeps what was drawn
+            if (!level.allows(i, coarse.exemplar[from])) continue;  // keeps the drawn source
             map.exemplar[i] = coarse.exemplar[from];
             const IndexBox box = sourcesFor(level, map, std::size_t(map.exemplar[i]), origin);
             const Index3 source = origin + (coarse.source[from] - coarse.originOf(strongest)) * factor;

@@ -10,20 +10,20 @@
 
 namespace vdbsynth {
 
-/// What all rounds of one pass of a texture optimization read.
+/// Input shared by all rounds of one pass of a texture optimization.
 struct PatchLevel {
     const SynthesisPass* pass = nullptr;
     const BlockSynthesisOptions* options = nullptr;
     std::vector<DenseField> exemplars;  ///< those of the pass
     /// [exemplar] mean of the mask over each patch; constant 1 without a mask.
     std::vector<BrickField> maskMeans;
-    std::vector<std::vector<Index3>> fallbacks;  ///< [exemplar] places inside the mask, spread over it
-    /// [exemplar] eligible places, a stride apart, whose patches hold a surface
+    std::vector<std::vector<Index3>> fallbacks;  ///< [exemplar] positions inside the mask, spread over it
+    /// [exemplar] eligible positions, a stride apart, whose patches hold a surface
     std::vector<double> surfacePlaces;
-    std::vector<std::int32_t> only;  ///< [lattice] the exemplar that sources are in; empty: any
+    std::vector<std::int32_t> only;  ///< [lattice] the exemplar that sources must be in; empty: any
     Guidance guidance;
-    std::vector<std::uint8_t> fixed;   ///< [lattice] 1: the patch has nothing open; empty: none is
-    std::vector<std::size_t> repeats;  ///< [lattice] the patch that each is the same as; empty: each itself
+    std::vector<std::uint8_t> fixed;  ///< [lattice] 1: no sample is open; empty: every patch has open samples
+    std::vector<std::size_t> repeats;  ///< [lattice] the patch that each repeats; empty: each is its own
 
     bool eligible(std::size_t exemplar, const Index3& place) const {
         return maskMeans[exemplar].inside(place) == 1.f;
@@ -32,7 +32,7 @@ struct PatchLevel {
     bool allows(std::size_t i, std::int32_t exemplar) const {
         return only.empty() || only[i] < 0 || only[i] == exemplar;
     }
-    /// True if patch i does not look for a source itself.
+    /// True if patch i does not search for a source itself.
     bool keeps(std::size_t i) const {
         return (!fixed.empty() && fixed[i]) || (!repeats.empty() && repeats[i] != i);
     }
@@ -44,19 +44,19 @@ PatchLevel patchLevel(const SynthesisPass& pass, const BlockSynthesisOptions& op
                       const std::vector<const BrickField*>& masks, const BrickField* open,
                       const RunContext& ctx);
 
-/// Where the source of the patch at an origin may begin, in exemplar number e.
+/// Box of the source positions for the patch at an origin, in exemplar number e.
 IndexBox sourcesFor(const PatchLevel& level, const PatchMap& map, std::size_t e, const Index3& origin);
 
-/// Gives every patch of a map an eligible source: of 64 drawn by the context's seed the one that the guidance
-/// likes best, without guidance the first.
+/// Gives every patch of a map an eligible source: of 64 drawn by the context's seed the one with the least
+/// guidance cost, without guidance the first.
 void drawSources(const PatchLevel& level, PatchMap& map, const RunContext& ctx);
 
-/// Gives every patch of a map on a lattice of its own the source that another map has where the patch's
-/// middle is, `factor` times the scale apart, or the nearest that it may have.
+/// Gives every patch of a map on another lattice the source of another map at the patch's middle, at `factor`
+/// times the scale, or the nearest eligible source.
 void liftSources(const PatchLevel& level, const PatchMap& coarse, int factor, PatchMap& map,
                  const RunContext& ctx);
 
-/// Gives every patch that repeats another its source and weight.
+/// Gives every patch that repeats another that patch's source and weight.
 void copyRepeats(const PatchLevel& level, PatchMap& map);
 
 }  // namespace vdbsynth

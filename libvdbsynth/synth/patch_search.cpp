@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/base/random.h"
+#include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/synth/long_runs.h"
 
 #include <algorithm>
@@ -13,15 +14,17 @@ namespace vdbsynth {
 namespace {
 
 constexpr std::uint32_t kDrawPurpose = 0x70730000;
-constexpr float kCostFloor = 0.02f;         // [voxels^2] added to costs before they are compared
-constexpr float kOverusePenalty = 2;        // share added for every time more than expected
-constexpr float kCompanionDiscount = 0.1f;  // share off for each neighbour that the source goes on from
-constexpr float kTooMany = 8;               // times a source's cost that makes a longer piece
-constexpr float kAgreement = 0.01f;         // [voxels^2] cost of patches that agree
+constexpr float kCostFloor = 0.02f;  // [voxels^2] added to costs before they are compared
+// Share added for every use above the expected number. Of 0 and 2, by distances to the exemplar's statistics
+// (docs/decisions/010): without it thick places are matched too often and the volume fraction rises.
+constexpr float kOverusePenalty = 2;
+constexpr float kCompanionDiscount = 0.1f;  // share subtracted for each neighbour that the source continues
+constexpr float kTooMany = 8;        // factor on the cost of a source that extends a piece beyond its limit
+constexpr float kAgreement = 0.01f;  // [voxels^2] cost of patches that agree
 constexpr std::size_t kPatchesAChunk = 64;
 constexpr std::int64_t kMostDense = 1 << 24;  // [voxels] of a field that are dense at once
 
-// How often each part of each exemplar is a source, in cells of a stride.
+// Number of uses of each part of each exemplar as a source, in cells of a stride.
 class Uses {
 public:
     Uses(const PatchLevel& level, const PatchMap& map, const std::vector<std::uint8_t>& varied)
@@ -29,8 +32,7 @@ public:
         for (const DenseField& exemplar : level.exemplars) {
             Cells cells;
             for (int axis = 0; axis < 3; ++axis) cells.size[axis] = exemplar.size[axis] / mSide + 1;
-            cells.count.assign(
-                std::size_t(cells.size.x) * std::size_t(cells.size.y) * std::size_t(cells.size.z), 0);
+            cells.count.assign(latticeCount(cells.size), 0);
             mCells.push_back(std::move(cells));
         }
         std::vector<double> uses(mCells.size(), 0);
@@ -40,7 +42,7 @@ public:
                 cells.count[cellOf(cells, map.source[i])] += 1;
                 uses[std::size_t(map.exemplar[i])] += 1;
             }
-        // Exemplars that have a place of their own are not expected to be used alike.
+        // Exemplars with assigned regions are not expected to be used equally.
         double all = 0, places = 0;
         for (std::size_t e = 0; e < uses.size(); ++e) {
             all += uses[e];
@@ -51,7 +53,7 @@ public:
                 float(std::max(0.5, level.only.empty() ? all / places : uses[e] / level.surfacePlaces[e]));
     }
 
-    // What a source's cost is multiplied by.
+    // Factor on a source's cost.
     float penalty(std::size_t exemplar, const Index3& source) const {
         const Cells& cells = mCells[exemplar];
         return 1 + kOverusePenalty * std::max(0.f, cells.count[cellOf(cells, source)] / cells.expected - 1);
@@ -64,10 +66,8 @@ private:
         float expected = 1;
     };
     std::size_t cellOf(const Cells& cells, const Index3& source) const {
-        return (std::size_t((source.x + mHalf) / mSide) * std::size_t(cells.size.y) +
-                std::size_t((source.y + mHalf) / mSide)) *
-                   std::size_t(cells.size.z) +
-               std::size_t((source.z + mHalf) / mSide);
+        return latticeIndex(
+            {(source.x + mHalf) / mSide, (source.y + mHalf) / mSide, (source.z + mHalf) / mSide}, cells.size);
     }
 
     int mHalf, mSide;
@@ -77,11 +77,11 @@ private:
 struct Source {
     Index3 place;
     std::int32_t exemplar = 0;
-    float cost = 0;                                           // mean squared difference, and what guides
-    float dearness = std::numeric_limits<float>::infinity();  // what is compared
+    float cost = 0;                                                // mean squared difference plus guidance
+    float penalizedCost = std::numeric_limits<float>::infinity();  // what is compared
 };
 
-// Looks for the best source of one patch after another.
+// Searches the best source of one patch after another.
 class PatchSearch {
 public:
     /// @param slab  planes of the field that patches are read from, and the first one's number
@@ -108,16 +108,16 @@ public:
         look(mMap.exemplar[i], mMap.source[i]);
         lookAtNeighbours(round % 3 == 2 ? 2 : 1);
         lookAround(i, round, seed);
-        // Nothing eligible was looked at: a mask with little left. The first place that is.
-        if (!std::isfinite(mBest.dearness)) lookEverywhere();
+        // No eligible position was tried: a mask with little left. Take the first eligible one.
+        if (!std::isfinite(mBest.penalizedCost)) lookEverywhere();
         return mBest;
     }
 
 private:
     void look(std::int32_t exemplar, const Index3& place) {
         const std::size_t e = std::size_t(exemplar);
-        // Neighbours that copy on name the same place again.
-        if (exemplar == mBest.exemplar && place == mBest.place && std::isfinite(mBest.dearness)) return;
+        // Neighbours that continue a copy propose the same position again.
+        if (exemplar == mBest.exemplar && place == mBest.place && std::isfinite(mBest.penalizedCost)) return;
         if (!mLevel.allows(mNumber, exemplar) || !sourcesFor(mLevel, mMap, e, mOrigin).contains(place) ||
             !mLevel.eligible(e, place))
             return;
@@ -127,41 +127,36 @@ private:
             mUses.penalty(e, place) *
             (tooMany ? kTooMany : 1 - kCompanionDiscount * float(companions(exemplar, place)));
         const float guided = mLevel.guidance.empty() ? 0.f : mLevel.guidance.cost(mOrigin, e, place);
-        const float giveUp = mBest.dearness / factor - kCostFloor - guided;
+        const float giveUp = mBest.penalizedCost / factor - kCostFloor - guided;
         if (giveUp < 0) return;
         const float cost = patchDifference(mPatch, mLevel.exemplars[e], place, mMap.block, giveUp);
         ++mCompared;
-        const float dearness = (cost + guided + kCostFloor) * factor;
-        if (dearness < mBest.dearness) mBest = {place, exemplar, cost + guided, dearness};
+        const float penalizedCost = (cost + guided + kCostFloor) * factor;
+        if (penalizedCost < mBest.penalizedCost) mBest = {place, exemplar, cost + guided, penalizedCost};
     }
 
-    // Neighbours whose sources lie to this one as they lie themselves: 0 to 6.
+    // Number of neighbours whose sources have the same offsets as the patches: 0 to 6.
     int companions(std::int32_t exemplar, const Index3& place) const {
         int count = 0;
-        for (int axis = 0; axis < 3; ++axis)
-            for (const int side : {-1, 1}) {
-                Index3 other = mPlace;
-                other[axis] += side;
-                if (other[axis] < 0 || other[axis] >= mLattice[axis]) continue;
-                const std::size_t k = numberOf(other);
-                count +=
-                    mMap.exemplar[k] == exemplar && mMap.source[k] - mMap.originOf(other) == place - mOrigin;
-            }
+        for (const Index3& step : kFaceNeighbours) {
+            const Index3 other = mPlace + step;
+            if (!IndexBox::fromSize(mLattice).contains(other)) continue;
+            const std::size_t k = latticeIndex(other, mLattice);
+            count += mMap.exemplar[k] == exemplar && mMap.source[k] - mMap.originOf(other) == place - mOrigin;
+        }
         return count;
     }
 
     void lookAtNeighbours(int step) {
-        for (int axis = 0; axis < 3; ++axis)
-            for (const int side : {-step, step}) {
-                Index3 other = mPlace;
-                other[axis] += side;
-                if (other[axis] < 0 || other[axis] >= mLattice[axis]) continue;
-                const std::size_t k = numberOf(other);
-                look(mMap.exemplar[k], mMap.source[k] + mOrigin - mMap.originOf(other));
-            }
+        for (const Index3& side : kFaceNeighbours) {
+            const Index3 other = mPlace + side * step;
+            if (!IndexBox::fromSize(mLattice).contains(other)) continue;
+            const std::size_t k = latticeIndex(other, mLattice);
+            look(mMap.exemplar[k], mMap.source[k] + mOrigin - mMap.originOf(other));
+        }
     }
 
-    // Places drawn from boxes around the best, each half as wide as the one before.
+    // Positions drawn from boxes around the best, each half as wide as the one before.
     void lookAround(std::size_t i, int round, std::uint64_t seed) {
         Random random(seed, i, kDrawPurpose + std::uint32_t(round));
         const std::uint32_t count = std::uint32_t(mLevel.exemplars.size());
@@ -186,19 +181,12 @@ private:
     void lookEverywhere() {
         for (std::size_t e = 0; e < mLevel.exemplars.size(); ++e)
             for (const Index3& place : mLevel.fallbacks[e]) look(std::int32_t(e), place);
-        if (std::isfinite(mBest.dearness)) return;
+        if (std::isfinite(mBest.penalizedCost)) return;
         for (std::size_t e = 0; e < mLevel.exemplars.size(); ++e) {
             if (!mLevel.allows(mNumber, std::int32_t(e))) continue;
             const IndexBox box = sourcesFor(mLevel, mMap, e, mOrigin);
-            for (int x = box.min.x; x <= box.max.x; ++x)
-                for (int y = box.min.y; y <= box.max.y; ++y)
-                    for (int z = box.min.z; z <= box.max.z; ++z) look(std::int32_t(e), {x, y, z});
+            forEachVoxel(box, [&](const Index3& place) { look(std::int32_t(e), place); });
         }
-    }
-
-    std::size_t numberOf(const Index3& l) const {
-        return (std::size_t(l.x) * std::size_t(mLattice.y) + std::size_t(l.y)) * std::size_t(mLattice.z) +
-               std::size_t(l.z);
     }
 
     const PatchLevel& mLevel;
@@ -226,7 +214,7 @@ std::vector<std::uint8_t> variedPatches(const PatchMap& map, const BrickField& f
     return varied;
 }
 
-// True where a patch and its source are one and the same value: nothing is nearer.
+// True if a patch and its source are constant and equal: nothing is nearer.
 bool settled(const PatchLevel& level, const PatchMap& map, const BrickField& field, std::size_t i) {
     float own, source;
     return level.allows(i, map.exemplar[i]) && level.guidance.empty() &&
@@ -288,7 +276,7 @@ DenseField densePlanes(const BrickField& field, int first, int count, const RunC
     return slab;
 }
 
-// The sources of those patches that search, each by what all had before the round.
+// The sources of the patches that search, each based on the state before the round.
 std::vector<Source> foundSources(const PatchLevel& level, const BrickField& field, int round,
                                  const std::vector<std::uint8_t>& searches,
                                  const std::vector<std::uint8_t>& tooMany, const Uses& uses,
@@ -323,7 +311,7 @@ void takeFound(const std::vector<std::uint8_t>& searches, const std::vector<Sour
     }
 }
 
-// 1 for patches with a surface that look for their source themselves.
+// 1 for patches with a surface that search for their own source.
 std::vector<std::uint8_t> patchesThatCount(const PatchLevel& level, const PatchMap& map,
                                            const BrickField& field, const RunContext& ctx) {
     std::vector<std::uint8_t> counted = variedPatches(map, field, ctx);

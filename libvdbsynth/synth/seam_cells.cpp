@@ -1,6 +1,7 @@
 #include "libvdbsynth/synth/seam_cells.h"
 
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/math/lattice.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,16 +11,12 @@ namespace vdbsynth {
 namespace {
 
 constexpr int kMostMargin = 2;               // [voxels]
-constexpr int kOccupancy = 2;                // side of what is marked as taken at once
+constexpr int kOccupancy = 2;                // side of the regions that are marked as taken
 constexpr std::size_t kGroupsLookedAt = 64;  // as many as a word has bits
 
 std::int8_t nearValue(float distance) {
     const int value = int(std::lround(double(distance) * 64));
     return std::int8_t(std::clamp(value, -NearField::kFar, NearField::kFar));
-}
-
-std::size_t volumeOf(const Index3& size) {
-    return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
 }
 
 // The parts of kOccupancy^3 places that a box and what touches it lie in.
@@ -30,16 +27,14 @@ std::vector<std::size_t> partsAround(const IndexBox& box, const Index3& parts) {
         around.max[axis] = std::min(around.max[axis] / kOccupancy, parts[axis] - 1);
     }
     std::vector<std::size_t> all;
-    for (int x = around.min.x; x <= around.max.x; ++x)
-        for (int y = around.min.y; y <= around.max.y; ++y)
-            for (int z = around.min.z; z <= around.max.z; ++z) all.push_back(numberIn(parts, {x, y, z}));
+    forEachVoxel(around, [&](const Index3& p) { all.push_back(latticeIndex(p, parts)); });
     return all;
 }
 
 }  // namespace
 
 NearField::NearField(const BrickField& field, const RunContext& ctx)
-    : mSize(field.box().size()), mSamples(volumeOf(field.box().size())) {
+    : mSize(field.box().size()), mSamples(latticeCount(field.box().size())) {
     const std::size_t samples = std::size_t(mSize.y) * std::size_t(mSize.z);
     parallelFor(ctx, std::size_t(mSize.x), 4, [&](std::size_t begin, std::size_t end) {
         std::vector<float> plane(samples);
@@ -65,9 +60,9 @@ bool NearField::hasSurface(const Index3& corner) const {
 
 std::size_t NearField::surfaceCells() const {
     std::size_t count = 0;
-    for (int x = 0; x + kSeamCell <= mSize.x; x += kSeamCell)
-        for (int y = 0; y + kSeamCell <= mSize.y; y += kSeamCell)
-            for (int z = 0; z + kSeamCell <= mSize.z; z += kSeamCell) count += hasSurface({x, y, z});
+    const IndexBox corners{{0, 0, 0}, mSize - Index3{kSeamCell, kSeamCell, kSeamCell}};
+    forEachVoxel(
+        corners, [&](const Index3& corner) { count += hasSurface(corner); }, kSeamCell);
     return count;
 }
 
@@ -82,7 +77,7 @@ int cellDifference(const NearField& a, const Index3& p, const NearField& b, cons
 }
 
 SeamCells::SeamCells(const PatchMap& map) {
-    // Patches begin a stride apart, so that what is at most this long lies inside one.
+    // Patches begin a stride apart, so a range of at most this length lies inside one.
     const int longest = map.block - map.stride + 1;
     const int margin = std::clamp((longest - kSeamCell) / 2, 0, kMostMargin);
     mBlocks.target = map.target;
@@ -129,16 +124,14 @@ std::size_t SeamCells::strongestPatch(const PatchMap& map, const Index3& cell) c
     };
     std::size_t best = 0;
     float most = -1;
-    for (int a = x.first; a <= x.last; ++a)
-        for (int b = y.first; b <= y.last; ++b)
-            for (int c = z.first; c <= z.last; ++c) {
-                const std::size_t i = numberIn(mPatches, {a, b, c});
-                const float say =
-                    weight(0, a) * weight(1, b) * weight(2, c) * (map.weight.empty() ? 1.f : map.weight[i]);
-                if (say <= most) continue;
-                most = say;
-                best = i;
-            }
+    forEachVoxel({{x.first, y.first, z.first}, {x.last, y.last, z.last}}, [&](const Index3& patch) {
+        const std::size_t i = latticeIndex(patch, mPatches);
+        const float say = weight(0, patch.x) * weight(1, patch.y) * weight(2, patch.z) *
+                          (map.weight.empty() ? 1.f : map.weight[i]);
+        if (say <= most) return;
+        most = say;
+        best = i;
+    });
     return best;
 }
 
@@ -147,7 +140,7 @@ std::vector<std::vector<std::int32_t>> groupsApart(const std::vector<IndexBox>& 
     for (int axis = 0; axis < 3; ++axis) parts[axis] = count[axis] / kOccupancy + 1;
     std::vector<std::vector<std::int32_t>> groups;
     // [part] a bit for each of the last groups that has a box there: group g has bit g % kGroupsLookedAt
-    std::vector<std::uint64_t> taken(volumeOf(parts), 0);
+    std::vector<std::uint64_t> taken(latticeCount(parts), 0);
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         if (boxes[i].empty()) continue;
         const std::vector<std::size_t> wanted = partsAround(boxes[i], parts);

@@ -1,6 +1,7 @@
 #include "libvdbsynth/synth/seam_cut.h"
 
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/math/min_cut.h"
 #include "libvdbsynth/synth/seam_cells.h"
 
@@ -11,17 +12,20 @@
 namespace vdbsynth {
 namespace {
 
-constexpr int kAbove = 16;  // times what a seam across an axis costs along which everything keeps its place
-constexpr int kTooLong = 1500;  // [64ths of a voxel] what each cell costs that makes a piece too long
-// [64ths of a voxel] of a cell that an exemplar has not, in its end
+constexpr int kAbove = 16;  // seams that cross an axis kept at 1x cost this many times as much
+// [64ths of a voxel] cost of each cell beyond a piece's limit. Chosen, not tuned: 23 voxels are several times
+// what the seams of a cell cost where two patches agree within a voxel, so that such a cell goes to any patch
+// that fits.
+constexpr int kTooLong = 1500;
+// [64ths of a voxel] of a cell beyond an exemplar's end
 constexpr int kBeyond = 2 * NearField::kFar * kSeamCell * kSeamCell * kSeamCell;
 
-// From where everything in a piece is copied.
+// A shift: the offset from which a whole piece is copied.
 struct Shift {
     std::int32_t exemplar = 0;
     Index3 by;
     std::vector<std::size_t> patches;  // that offer it
-    IndexBox cells;                    // around those inside them
+    IndexBox cells;                    // around the cells inside them
 };
 
 void include(IndexBox& box, const IndexBox& more) {
@@ -32,21 +36,13 @@ void include(IndexBox& box, const IndexBox& more) {
     }
 }
 
-// Calls body(place) for all of a box, x slowest.
-template <typename Body>
-void forEachIn(const IndexBox& box, const Body& body) {
-    for (int x = box.min.x; x <= box.max.x; ++x)
-        for (int y = box.min.y; y <= box.max.y; ++y)
-            for (int z = box.min.z; z <= box.max.z; ++z) body(Index3{x, y, z});
-}
-
 // The shifts of a map, in the order of their first patches.
 struct Shifts {
     std::vector<Shift> all;
     std::vector<std::int32_t> ofPatch;
 };
 
-// 1 for patches without a surface that were matched where none is: they fit wherever they are.
+// 1 for patches without a surface that were matched where none is: they fit anywhere.
 std::vector<std::uint8_t> patchesWithout(const PatchLevel& level, const PatchMap& map,
                                          const BrickField& field, const RunContext& ctx) {
     std::vector<std::uint8_t> without(map.source.size());
@@ -80,7 +76,18 @@ Shifts shiftsOf(const PatchLevel& level, const PatchMap& map, const SeamCells& c
     return shifts;
 }
 
-// Which shift each cell copies by, and one shift after another taking what it wants.
+// The shift of each cell; one shift after another takes the cells that it improves.
+//
+// Between two groups of shifts:
+// - mTaken gives every cell a shift whose source of the cell exists or costs kBeyond; it begins with that of
+// the
+//   strongest patch, so the state is a complete assignment at any time;
+// - a shift's expansion changes only cells inside its own patches to that shift, and only where the energy of
+//   cutSeams (seam_cut.h), with kTooLong added for marked cells, does not rise;
+// - mTooLong marks cells that exceeded their piece's limit in the first assignment and no other shift has
+// taken
+//   since; nothing is ever marked later, since an expansion stops at the limit;
+// - shifts of a group have no cells in common or beside each other, so their order does not matter.
 class SeamCut {
 public:
     SeamCut(const PatchLevel& level, const PatchMap& map, const BrickField& field, const RunContext& ctx)
@@ -105,7 +112,7 @@ public:
         std::vector<IndexBox> boxes;
         for (const Shift& shift : mShifts.all) boxes.push_back(shift.cells);
         Stage stage(mContext, "cutting seams", std::max<std::size_t>(1, boxes.size()));
-        // What the shifts of a group take does not matter to each other.
+        // The shifts of a group take cells independently.
         for (const std::vector<std::int32_t>& group : groupsApart(boxes, mCells.count())) {
             parallelFor(mContext, group.size(), 1, [&](std::size_t begin, std::size_t end) {
                 for (std::size_t k = begin; k < end; ++k) expand(group[k]);
@@ -124,7 +131,7 @@ public:
     }
 
 private:
-    // At first every cell copies by the patch that has most say in its middle.
+    // At first every cell uses the patch with the largest weight in its middle.
     void takeStrongest() {
         mTaken.resize(mCells.total());
         forEachCell([&](const Index3& cell) {
@@ -137,19 +144,19 @@ private:
     void forEachCell(const Body& body) const {
         const Index3 count = mCells.count();
         parallelFor(mContext, std::size_t(count.x), 1, [&](std::size_t begin, std::size_t end) {
-            forEachIn({{int(begin), 0, 0}, {int(end) - 1, count.y - 1, count.z - 1}}, body);
+            forEachVoxel({{int(begin), 0, 0}, {int(end) - 1, count.y - 1, count.z - 1}}, body);
         });
     }
 
-    // Cells of pieces that are too long from the beginning are dear to keep.
+    // Cells of pieces that are too long from the beginning are penalised.
     void markTooLong() {
         mTooLong.assign(mTaken.size(), 0);
         std::vector<std::size_t> count(mShifts.all.size(), 0);
         for (std::int32_t s : mTaken) ++count[std::size_t(s)];
         std::vector<std::vector<Index3>> cells(mShifts.all.size());
-        forEachIn(IndexBox::fromSize(mCells.count()), [&](const Index3& cell) {
+        forEachVoxel(IndexBox::fromSize(mCells.count()), [&](const Index3& cell) {
             const std::size_t s = std::size_t(mTaken[mCells.number(cell)]);
-            // Fewer cells than may have a surface are never too many.
+            // A shift with fewer cells than the limit is never too long.
             if (count[s] > mMost[std::size_t(mShifts.all[s].exemplar)]) cells[s].push_back(cell);
         });
         parallelFor(mContext, cells.size(), 16, [&](std::size_t begin, std::size_t end) {
@@ -159,8 +166,8 @@ private:
         });
     }
 
-    // How many of some cells, those nearest to its middle first, a shift may have beside the `had` with a
-    // surface that it has. Brings them into that order if it may not have all.
+    // Number of cells, those nearest to its middle first, that a shift may take in addition to its `had`
+    // cells with a surface. Sorts them in that order if it may not take all.
     std::size_t nearest(const Shift& shift, std::size_t had, std::vector<Index3>& cells) const {
         const std::size_t most = mMost[std::size_t(shift.exemplar)];
         std::size_t all = had;
@@ -186,9 +193,9 @@ private:
         std::vector<std::int32_t> numbers;  // [box] under 0: no node
         std::vector<Index3> cells;
 
-        std::int32_t& at(const Index3& cell) { return numbers[numberIn(box.size(), cell - box.min)]; }
+        std::int32_t& at(const Index3& cell) { return numbers[latticeIndex(cell - box.min, box.size())]; }
         std::int32_t find(const Index3& cell) const {
-            return box.contains(cell) ? numbers[numberIn(box.size(), cell - box.min)] : -1;
+            return box.contains(cell) ? numbers[latticeIndex(cell - box.min, box.size())] : -1;
         }
     };
 
@@ -198,9 +205,9 @@ private:
         nodes.box = shift.cells;
         nodes.numbers.assign(std::size_t(nodes.box.volume()), -1);
         for (std::size_t i : shift.patches)
-            forEachIn(mCells.inside(mMap.place(i)), [&](const Index3& cell) { nodes.at(cell) = 0; });
+            forEachVoxel(mCells.inside(mMap.place(i)), [&](const Index3& cell) { nodes.at(cell) = 0; });
         std::size_t had = 0;
-        forEachIn(nodes.box, [&](const Index3& cell) {
+        forEachVoxel(nodes.box, [&](const Index3& cell) {
             if (mTaken[mCells.number(cell)] == s)
                 had += hasSurface(shift, cell);
             else if (nodes.at(cell) == 0)
@@ -230,10 +237,11 @@ private:
         }
     }
 
-    // The seams between node k and its neighbours. Of two nodes p and q that copy by a and b now, with V the
-    // cost of a seam and s the shift that asks: V(a, b) if both say no, V(a, s) or V(s, b) if one says yes, 0
-    // if both do, which is V(a, b) + (V(s, b) - V(a, b)) p - V(s, b) q + (V(a, s) + V(s, b) - V(a, b)) (1 -
-    // p) q. The last is never under 0, since V is a distance, unless a cell is beyond an exemplar's end.
+    // The seams between node k and its neighbours. For two nodes p and q that use a and b now, with V
+    // the cost of a seam and s the expanding shift: V(a, b) if both are no, V(a, s) or V(s, b) if one is
+    // yes, 0 if both are, which is V(a, b) + (V(s, b) - V(a, b)) p - V(s, b) q + (V(a, s) + V(s, b) -
+    // V(a, b)) (1 - p) q. The last coefficient is never negative, since V is a distance, unless a cell
+    // is beyond an exemplar's end.
     void addSeams(std::int32_t s, const Nodes& nodes, std::size_t k, CutProblem& problem) const {
         const Index3 cell = nodes.cells[k];
         const std::int32_t a = mTaken[mCells.number(cell)];
@@ -253,7 +261,7 @@ private:
             }
     }
 
-    // What it costs that cell p copies by one shift and its neighbour q by another.
+    // Cost of cell p using one shift and its neighbour q another.
     int seam(int axis, const Index3& p, const Index3& q, std::int32_t a, std::int32_t b) const {
         return a == b ? 0 : mAcross[std::size_t(axis)] * (apart(p, a, b) + apart(q, a, b));
     }
@@ -283,9 +291,9 @@ private:
     const Shifts mShifts;
     std::vector<NearField> mExemplars;
     std::vector<std::size_t> mMost;       // [exemplar] cells with a surface in one piece
-    std::array<int, 3> mAcross{1, 1, 1};  // [axis] times what a seam across it costs
-    std::vector<std::int32_t> mTaken;     // [cell] the shift that it copies by
-    std::vector<std::uint8_t> mTooLong;   // [cell] 1 until another shift takes it: it makes a piece too long
+    std::array<int, 3> mAcross{1, 1, 1};  // [axis] cost factor of a seam across it
+    std::vector<std::int32_t> mTaken;     // [cell] its shift
+    std::vector<std::uint8_t> mTooLong;   // [cell] 1 until another shift takes it: its piece is too long
 };
 
 }  // namespace

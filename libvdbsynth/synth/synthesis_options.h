@@ -3,19 +3,19 @@
 
 namespace vdbsynth {
 
-/// What happens at the two faces of the target along an axis that grows.
+/// Treatment of the target's two faces along an axis that grows.
 enum class Border {
-    Cut,     ///< the texture goes on beyond the face; sources may come from anywhere
-    Object,  ///< within a block of a face only sources at the same distance from the same exemplar face, and
-             ///< those nowhere else
-    Tile     ///< the target goes on at one face as it begins at the other; optimizeTexture only
+    Cut,     ///< the texture continues beyond the face; sources may come from anywhere
+    Object,  ///< within a block of a face only sources at the same distance from the same exemplar face,
+             ///< which are used nowhere else
+    Tile     ///< the target repeats: one face continues the other; optimizeTexture only
 };
 
 /// How a target is filled.
 enum class SynthesisMethod {
     Default,  ///< texture optimization (texture_optimization.h)
-    Exact,    ///< blocks in raster order, each the exact best match for what is known, all of them voting
-    Paper     ///< as [lagae2004] has it: random padding, 256 values, octants copied once
+    Exact,    ///< blocks in raster order, each the exact best match for the known samples; all of them vote
+    Paper     ///< as in [lagae2004]: random padding, 256 values, octants copied once
 };
 
 struct BlockSynthesisStats {

@@ -68,7 +68,7 @@ IndexBox sourceBox(const BlockSynthesisOptions& options, const SynthesisPass& pa
 
 namespace {
 
-// A period that is no whole number of samples would not come out even.
+// A period that is not a whole number of samples would not divide evenly.
 bool halvesWhatTiles(const BlockSynthesisOptions& options, int scale) {
     for (int axis = 0; axis < 3; ++axis)
         if (options.border[std::size_t(axis)] == Border::Tile &&
@@ -100,14 +100,14 @@ std::vector<SynthesisPass> planPasses(const Fields& exemplars, const BlockSynthe
     if (options.levels > int(passes.size()))
         message(ctx, MessageLevel::Note,
                 "`levels` " + std::to_string(options.levels) + ": the exemplar is large enough for " +
-                    std::to_string(passes.size()) + "; using those");
+                    std::to_string(passes.size()) + " levels only; using those");
     return passes;
 }
 
 int exemplarAt(const BlockSynthesisOptions& options, const SynthesisPass& pass, const Index3& middle) {
-    if (!options.which) return -1;
+    if (!options.exemplarMap) return -1;
     const Index3 half{pass.scale / 2, pass.scale / 2, pass.scale / 2};
-    return int(std::lround(options.which->at(middle * pass.scale + half)));
+    return int(std::lround(options.exemplarMap->at(middle * pass.scale + half)));
 }
 
 std::vector<PassMasks> masksOf(const BlockSynthesisOptions& options, std::size_t passes,
@@ -145,7 +145,7 @@ void requireFields(const BlockSynthesisOptions& options,
                   std::to_string(options.exemplarGuides.size()), "one for each exemplar");
     perExemplar(options.exemplarGuides, "exemplarGuides");
     requireOption(bool(options.known) == bool(options.open), "known", "alone", "given together with `open`");
-    const std::pair<const BrickField*, const char*> ofTarget[] = {{options.which, "`which`"},
+    const std::pair<const BrickField*, const char*> ofTarget[] = {{options.exemplarMap, "`exemplarMap`"},
                                                                   {options.guide, "`guide`"},
                                                                   {options.known, "`known`"},
                                                                   {options.open, "`open`"}};

@@ -5,7 +5,7 @@
 
 namespace vdbsynth {
 
-/// How long a target is along one axis: so many voxels, or so many times the exemplar's domain. A plain
+/// Length of a target along one axis: a number of voxels, or a multiple of the exemplar's domain. A plain
 /// number is neither.
 class Extent {
 public:
@@ -14,9 +14,9 @@ public:
 
     bool isMultiple() const { return mMultiple; }
     double value() const { return mValue; }
-    /// [voxels], not rounded, where the domain has `domain` of them.
+    /// [voxels], not rounded, for a domain of `domain` voxels.
     double over(int domain) const { return mMultiple ? mValue * domain : mValue; }
-    /// `128` or `2x`, as the command line has it.
+    /// `128` or `2x`, in the form of the command line.
     std::string text() const;
 
 private:

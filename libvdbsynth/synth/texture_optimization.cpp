@@ -18,10 +18,10 @@ using Pass = SynthesisPass;
 
 constexpr int kRoundsFirst = 12, kRoundsBetween = 6, kRoundsLast = 2;
 constexpr int kOverlap = 4;        // patches over a sample along each axis
-constexpr int kRoundsOfCuts = 3;   // after the last, of runs that grew too long
-constexpr int kCoarsestSide = 32;  // [samples] an exemplar of less is not halved
+constexpr int kRoundsOfCuts = 3;   // after the last, for runs that became too long
+constexpr int kCoarsestSide = 32;  // [samples] a smaller exemplar is not halved
 
-// As many passes as leave the coarsest exemplar a side to choose from.
+// The number of passes that leaves the coarsest exemplar enough positions.
 int levelsFor(const Fields& exemplars, const BlockSynthesisOptions& options) {
     if (options.levels > 0) return options.levels;
     int shortest = 1 << 20;
@@ -42,7 +42,7 @@ PatchMap emptyMap(const Pass& pass, int block, const BlockSynthesisOptions& opti
     map.target = pass.target;
     map.block = block;
     map.stride = std::max(1, block / kOverlap);
-    // Patches that repeat each other lie a period apart, so the stride divides it.
+    // Patches that repeat each other are a period apart, so the stride divides it.
     const auto divides = [&] {
         for (int axis = 0; axis < 3; ++axis)
             if (options.border[std::size_t(axis)] == Border::Tile &&
@@ -55,7 +55,7 @@ PatchMap emptyMap(const Pass& pass, int block, const BlockSynthesisOptions& opti
     return map;
 }
 
-// Blocks in raster order over the coarsest pass: a first arrangement of what is large.
+// Blocks in raster order over the coarsest pass: an initial arrangement of large features.
 PatchMap firstArrangement(const Pass& pass, const BlockSynthesisOptions& options,
                           const std::vector<const BrickField*>& masks, const RunContext& ctx) {
     BlockSynthesisOptions first = options;
@@ -68,21 +68,17 @@ PatchMap firstArrangement(const Pass& pass, const BlockSynthesisOptions& options
     first.drift = options.drift / pass.scale;
     first.masks = masks;
     first.guide = nullptr;
-    BrickField which;
-    if (options.which) {
-        which = BrickField::generate(IndexBox::fromSize(pass.target), ctx,
-                                     [&](const IndexBox& brick, float* samples) {
-                                         for (int x = brick.min.x; x <= brick.max.x; ++x)
-                                             for (int y = brick.min.y; y <= brick.max.y; ++y)
-                                                 for (int z = brick.min.z; z <= brick.max.z; ++z)
-                                                     *samples++ = float(exemplarAt(options, pass, {x, y, z}));
-                                     });
-        first.which = &which;
+    BrickField exemplarMap;
+    if (options.exemplarMap) {
+        exemplarMap = BrickField::fromVoxels(IndexBox::fromSize(pass.target), ctx, [&](const Index3& p) {
+            return float(exemplarAt(options, pass, p));
+        });
+        first.exemplarMap = &exemplarMap;
     }
     return synthesizeBlocks(pass.exemplars, first, ctx).map;
 }
 
-// What each pass has of a mask and of a target that is known in part, finest first.
+// Each pass's part of a mask and of a partly known target, finest first.
 struct Given {
     std::vector<PassMasks> masks;
     GuideScales guides;
@@ -106,13 +102,13 @@ Given givenFor(const BlockSynthesisOptions& options, std::size_t passes, const R
     given.open.push_back(*options.open);
     while (given.open.size() < passes) {
         given.known.push_back(halved(given.known.back(), ctx));
-        // A coarse sample is open if any of its own is.
+        // A coarse sample is open if any of its fine samples is.
         given.open.push_back(exchanged(halvedMask(exchanged(given.open.back(), ctx), ctx), ctx));
     }
     return given;
 }
 
-// What is known, and elsewhere what was voted.
+// The known samples, and the vote elsewhere.
 BrickField withKnown(const Given& given, std::size_t p, BrickField voted, const RunContext& ctx) {
     if (given.open.empty()) return voted;
     return BrickField::generate(voted.box(), ctx, [&](const IndexBox& brick, float* samples) {
@@ -125,32 +121,20 @@ BrickField withKnown(const Given& given, std::size_t p, BrickField voted, const 
     });
 }
 
-bool anyBlockInside(const BrickField* masked, int block, const RunContext& ctx) {
-    if (!masked) return true;
-    const BrickField& mask = *masked;
-    const IndexBox box = mask.box();
-    const BrickField means = slidingMean(mask, block, ctx);
-    for (int x = box.min.x; x + block - 1 <= box.max.x; ++x)
-        for (int y = box.min.y; y + block - 1 <= box.max.y; ++y)
-            for (int z = box.min.z; z + block - 1 <= box.max.z; ++z)
-                if (means.inside({x, y, z}) == 1.f) return true;
-    return false;
-}
-
-bool everyMaskHasRoom(const PassMasks& masks, int block, const RunContext& ctx) {
-    for (const BrickField* mask : masks.each)
-        if (!anyBlockInside(mask, block, ctx)) return false;
-    return true;
-}
-
-// Smaller blocks, and fewer passes, where a mask leaves no room for the planned ones.
+// Smaller blocks, and fewer passes, where the planned ones do not fit into a mask.
 void fitToMask(const Given& given, bool blockGiven, std::vector<Pass>& passes, const RunContext& ctx) {
+    const auto fits = [&](std::size_t p) {
+        const std::vector<const BrickField*>& masks = given.masks[p].each;
+        return std::all_of(masks.begin(), masks.end(), [&](const BrickField* mask) {
+            return !mask || blockFitsInside(*mask, passes[p].block, ctx);
+        });
+    };
     for (std::size_t p = passes.size(); p-- > 0;) {
         int& block = passes[p].block;
         const bool fixed = p == 0 && blockGiven;
-        while (!fixed && block >= 8 && !everyMaskHasRoom(given.masks[p], block, ctx)) block /= 2;
+        while (!fixed && block >= 8 && !fits(p)) block /= 2;
         const bool last = p + 1 == passes.size();
-        if (!last || everyMaskHasRoom(given.masks[p], block, ctx)) continue;
+        if (!last || fits(p)) continue;
         if (p > 0)
             passes.pop_back();
         else
@@ -158,7 +142,7 @@ void fitToMask(const Given& given, bool blockGiven, std::vector<Pass>& passes, c
                         given.open.empty()
                             ? "`exemplarMask`: no block of " + std::to_string(block) +
                                   " voxels fits inside the mask; use a smaller `block`"
-                            : "nothing of the exemplar is left to fill the hole from; give an EXEMPLAR");
+                            : "the exemplar has nothing left to fill the hole from; give an EXEMPLAR");
     }
 }
 
@@ -186,7 +170,7 @@ private:
     void arrange() {
         const std::size_t last = mPasses.size() - 1;
         if (mGiven.open.empty()) {
-            // What guides is not known to the search for exact blocks.
+            // The search for exact blocks does not use guidance.
             mMap = mOptions.guide
                        ? emptyMap(mPasses[last], mPasses[last].block, mOptions)
                        : firstArrangement(mPasses[last], mOptions, mGiven.masks[last].each, mContext);
@@ -194,11 +178,11 @@ private:
         }
         mField = mGiven.known[last];
         if (mOptions.guessed) {
-            // The guess stays; sources come by searching from any place that may be one.
+            // The guess stays; the search finds sources at any eligible position.
             mMap = emptyMap(mPasses[last], mPasses[last].block, mOptions);
             return;
         }
-        Stage stage(mContext, "filling what is open", 1);
+        Stage stage(mContext, "filling open voxels", 1);
         mMap = fillOpen(mPasses[last], mGiven.masks[last].each, mGiven.open[last], mField, mContext);
         stage.advance();
     }
@@ -213,10 +197,11 @@ private:
             level.guidance = Guidance(mGiven.guides.target[p], mGiven.guides.exemplars[p],
                                       mGiven.guides.weight, map.block, mContext);
         const bool guidedStart = first && mOptions.guide;
-        if (mOptions.which || guidedStart) drawSources(level, map, mContext);
+        if (mOptions.exemplarMap || guidedStart) drawSources(level, map, mContext);
         if (!guidedStart) liftSources(level, mMap, first ? 1 : 2, map, mContext);
         copyRepeats(level, map);
-        // Sources lifted from where nothing is open say nothing, so what is open begins as the coarse result.
+        // Sources lifted from patches without open samples are meaningless, so open samples
+        // begin as the coarse result.
         if (!mGiven.open.empty() && !first) mField = doubled(mField, pass.target, mContext);
         const int rounds = first ? kRoundsFirst : p == 0 ? kRoundsLast : kRoundsBetween;
         Stage stage(
@@ -238,7 +223,7 @@ private:
         if (!mGiven.open.empty())
             mField = withKnown(mGiven, p, voteThroughMap(map, pass.exemplars, mContext, &level.exemplars),
                                mContext);
-        // What meets itself a period apart, or what is known, is left to the vote.
+        // Seams that meet themselves a period apart, or known samples, are left to the vote.
         const bool tiles = std::count(mOptions.border.begin(), mOptions.border.end(), Border::Tile) > 0;
         if (p == 0 && mGiven.open.empty() && !tiles) map = cutSeams(level, map, mField, mContext);
         mMap = std::move(map);
@@ -267,9 +252,9 @@ BlockSynthesisResult optimizeTexture(const Fields& exemplars, const BlockSynthes
     }
     std::vector<Pass> passes = planPasses(exemplars, own, own.block, levelsFor(exemplars, options), ctx);
     if (passes.size() == 1 && std::count(own.border.begin(), own.border.end(), Border::Tile) > 0)
-        message(
-            ctx, MessageLevel::Note,
-            "`border` tile: an odd size is made in one pass; a multiple of 4 voxels gives better results");
+        message(ctx, MessageLevel::Note,
+                "`border` tile: an odd size is synthesized in one pass; a multiple of 4 voxels gives better "
+                "results");
     const Given given = givenFor(own, passes.size(), ctx);
     fitToMask(given, options.block > 0, passes, ctx);
     return Optimization(passes, own, given, ctx).run();

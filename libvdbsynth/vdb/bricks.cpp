@@ -1,7 +1,9 @@
 #include "libvdbsynth/vdb/bricks.h"
 
+#include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/level_set.h"
 
 #include <openvdb/openvdb.h>
 
@@ -15,7 +17,7 @@ namespace {
 using Leaf = openvdb::FloatTree::LeafNodeType;
 constexpr int kSide = BrickField::kSide;
 
-// The value of a whole leaf-aligned region if it is one tile, by a probe of its leaf.
+// The value of a whole leaf-aligned region if it is one tile, by probing its leaf.
 void readLeafRegion(const openvdb::FloatGrid::ConstAccessor& accessor, const Index3& corner, int nx, int ny,
                     int nz, float* out, int strideX, int strideY) {
     const openvdb::Coord origin = toCoord(corner);
@@ -110,6 +112,56 @@ FloatGridPtr scatterBricks(const BrickField& field, const Index3& corner, float 
             grid->tree().addTile(1, toCoord(first + leafIndex * 8), -limit * scale, false);
     }
     return grid;
+}
+
+namespace {
+
+FloatGridPtr levelSetIn(const openvdb::math::Transform& transform, const BrickField& band, float halfWidth,
+                        const std::string& what, const RunContext& ctx) {
+    const FloatGridPtr grid = scatterBricks(band, {0, 0, 0}, float(transform.voxelSize()[0]), halfWidth, ctx);
+    if (grid->activeVoxelCount() == 0) throw Error(ErrorCode::EmptyInput, what + " has no surface");
+    grid->setTransform(transform.copy());
+    grid->setName(kSurfaceName);
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    return grid;
+}
+
+}  // namespace
+
+FloatGridPtr levelSetFrom(const BrickField& band, float halfWidth, const openvdb::FloatGrid& like,
+                          const std::string& what, const RunContext& ctx) {
+    return levelSetIn(like.transform(), band, halfWidth, what, ctx);
+}
+
+FloatGridPtr levelSetFrom(const BrickField& band, float halfWidth, double voxelSize, const std::string& what,
+                          const RunContext& ctx) {
+    return levelSetIn(*openvdb::math::Transform::createLinearTransform(voxelSize), band, halfWidth, what,
+                      ctx);
+}
+
+BrickField gatherNarrowBand(const openvdb::FloatGrid& levelSet, const IndexBox& domain,
+                            const RunContext& ctx) {
+    return gatherBricks(levelSet, domain, float(1 / voxelSizeOf(levelSet)), kHalfWidth, ctx);
+}
+
+KnownBand gatherKnownBand(const openvdb::FloatGrid& levelSet, const IndexBox& domain, const CutFaces& cut,
+                          int reach, const RunContext& ctx) {
+    IndexBox box = domain;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!cut[std::size_t(2 * axis)]) box.min[axis] -= reach;
+        if (!cut[std::size_t(2 * axis + 1)]) box.max[axis] += reach;
+    }
+    KnownBand known;
+    known.field = gatherNarrowBand(levelSet, box, ctx);
+    known.domain = {domain.min - box.min, domain.max - box.min};
+    known.band = kHalfWidth;
+    return known;
+}
+
+BrickField gatherWideBand(const openvdb::FloatGrid& levelSet, const IndexBox& domain, const CutFaces& cut,
+                          float halfWidth, const RunContext& ctx) {
+    const KnownBand known = gatherKnownBand(levelSet, domain, cut, reachToWiden(halfWidth), ctx);
+    return widenBand(known, halfWidth, ctx);
 }
 
 }  // namespace vdbsynth

@@ -29,7 +29,7 @@ std::vector<const Leaf*> leavesOf(const openvdb::FloatGrid& grid) {
 
 namespace {
 
-constexpr int kFarthest = 1 << 28;  // so that sums and differences of indices are whole numbers too
+constexpr int kFarthest = 1 << 28;  // so that sums and differences of indices fit an int too
 
 bool isNear(const IndexBox& box) {
     for (int axis = 0; axis < 3; ++axis)
@@ -37,7 +37,7 @@ bool isNear(const IndexBox& box) {
     return true;
 }
 
-// Rotation, mirror and uniform scale keep distances; anything else does not.
+// Rotation, reflection and uniform scale keep distances; nothing else does.
 bool hasCubicVoxels(const openvdb::FloatGrid& grid) {
     if (!grid.transform().isLinear()) return false;
     const openvdb::Mat3d linear = grid.transform().baseMap()->getAffineMap()->getMat4().getMat3();
@@ -73,26 +73,28 @@ void requireModel(const LevelSet* model, const std::string& what, const RunConte
     if (!model || !model->grid)
         throw Error(ErrorCode::InvalidOption,
                     what + (model ? ": its `grid`" : "") + " is null; a level set is needed");
-    for (const GridPtr& carried : model->carried)
-        if (!carried) throw Error(ErrorCode::InvalidOption, what + ": one of its `carried` grids is null");
+    for (const GridPtr& attribute : model->attributes)
+        if (!attribute)
+            throw Error(ErrorCode::InvalidOption, what + ": one of its `attributes` grids is null");
     const openvdb::FloatGrid& grid = *model->grid;
     if (grid.getGridClass() == openvdb::GRID_FOG_VOLUME || !(grid.background() > 0))
-        throw Error(ErrorCode::Unusable, what +
-                                             ": is no level set, which is negative inside and positive "
-                                             "outside; make one of it with modelFromGrids");
+        throw Error(
+            ErrorCode::Unusable,
+            what +
+                ": is not a level set (negative inside, positive outside); convert it with modelFromGrids");
     if (!hasCubicVoxels(grid))
         throw Error(ErrorCode::Unusable,
-                    what + ": its voxels are no cubes; resample it, as modelFromGrids does");
+                    what + ": its voxels are not cubes; resample it, as modelFromGrids does");
+    if (grid.activeVoxelCount() == 0) throw Error(ErrorCode::EmptyInput, what + ": has no active voxels");
+    if (model->domain.empty() || !isNear(model->domain))
+        throw Error(ErrorCode::InvalidOption, what + ": its `domain` " + boxText(model->domain) +
+                                                  (model->domain.empty() ? " is empty" : " is too far away") +
+                                                  "; solidBox gives the box of the solid");
+    if (!hasFiniteValues(grid, ctx)) throw Error(ErrorCode::BadData, what + ": holds NaN or infinite values");
     const double halfWidth = halfWidthOf(grid);
     if (!(halfWidth >= 1.4999))
         throw Error(ErrorCode::Unusable, what + ": its band of " + roundedText(halfWidth, 4) +
                                              " voxels a side is under 1.5; rebuild it with a wider one");
-    if (grid.activeVoxelCount() == 0) throw Error(ErrorCode::EmptyInput, what + ": has no active voxels");
-    if (!hasFiniteValues(grid, ctx)) throw Error(ErrorCode::BadData, what + ": holds NaN or infinite values");
-    if (model->domain.empty() || !isNear(model->domain))
-        throw Error(ErrorCode::InvalidOption, what + ": its `domain` " + boxText(model->domain) +
-                                                  (model->domain.empty() ? " is empty" : " is too far away") +
-                                                  "; solidBox says where the solid is");
 }
 
 void requireBox(const IndexBox& box, const std::string& field) {
@@ -182,7 +184,7 @@ std::size_t activeVoxels(const openvdb::FloatGrid& grid) {
 void stampLevelSet(LevelSet& levelSet) {
     levelSet.grid->setName(kSurfaceName);
     levelSet.grid->setGridClass(openvdb::GRID_LEVEL_SET);
-    levelSet.grid->setSaveFloatAsHalf(false);  // a file read at half precision is not written so
+    levelSet.grid->setSaveFloatAsHalf(false);  // a file read at half precision is not written at half
     levelSet.grid->removeMeta(kDomainKey);
     if (levelSet.domainRecorded)
         levelSet.grid->insertMeta(kDomainKey, openvdb::StringMetadata(boxText(levelSet.domain)));
@@ -205,7 +207,7 @@ std::string levelSetHash(const openvdb::FloatGrid& grid) {
     openvdb::FloatTree::ValueAllCIter tile = grid.tree().cbeginValueAll();
     tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
     for (; tile; ++tile) {
-        // What a tree keeps nothing for may or may not have a place in its nodes.
+        // Inactive background is skipped: a tree may or may not have tiles for it.
         if (!tile.isValueOn() && *tile == background) continue;
         const openvdb::CoordBBox box = tile.getBoundingBox();
         const std::int32_t place[7] = {box.min().x(), box.min().y(), box.min().z(),   box.max().x(),

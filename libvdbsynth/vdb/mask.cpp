@@ -2,7 +2,9 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/wall.h"
 
 #include <openvdb/openvdb.h>
@@ -24,22 +26,6 @@ void requireVoxelSize(double voxelSize) {
                   "above 0 (world)");
 }
 
-template <typename Grid>
-bool gatherActive(const openvdb::GridBase& base, const IndexBox& box, BrickField& field,
-                  const RunContext& ctx) {
-    if (!base.isType<Grid>()) return false;
-    const Grid& grid = static_cast<const Grid&>(base);
-    field =
-        BrickField::generate(IndexBox::fromSize(box.size()), ctx, [&](const IndexBox& brick, float* samples) {
-            const auto accessor = grid.getConstAccessor();
-            for (int x = brick.min.x; x <= brick.max.x; ++x)
-                for (int y = brick.min.y; y <= brick.max.y; ++y)
-                    for (int z = brick.min.z; z <= brick.max.z; ++z)
-                        *samples++ = accessor.isValueOn(toCoord(Index3{x, y, z} + box.min)) ? 1.f : 0.f;
-        });
-    return true;
-}
-
 }  // namespace
 
 void requireMaskFor(const openvdb::GridBase& grid, const openvdb::FloatGrid& like) {
@@ -54,10 +40,15 @@ BrickField gatherMask(const openvdb::GridBase& grid, const IndexBox& box, const 
                       const RunContext& ctx) {
     requireMaskFor(grid, like);
     BrickField field;
-    if (gatherActive<openvdb::BoolGrid>(grid, box, field, ctx) ||
-        gatherActive<openvdb::FloatGrid>(grid, box, field, ctx) ||
-        gatherActive<openvdb::MaskGrid>(grid, box, field, ctx) ||
-        gatherActive<openvdb::Int32Grid>(grid, box, field, ctx))
+    if (grid.apply<MaskGrids>([&](const auto& typed) {
+            field = BrickField::generate(
+                IndexBox::fromSize(box.size()), ctx, [&](const IndexBox& brick, float* samples) {
+                    const auto accessor = typed.getConstAccessor();
+                    forEachVoxel(brick, [&](const Index3& p) {
+                        *samples++ = accessor.isValueOn(toCoord(p + box.min)) ? 1.f : 0.f;
+                    });
+                });
+        }))
         return field;
     throw Error(ErrorCode::BadData, "mask \"" + grid.getName() + "\": a grid of " + grid.valueType() +
                                         " cannot be a mask; bool, mask, int32 or float can");
@@ -85,11 +76,15 @@ GridPtr ballMask(const Vec3d& centre, double radius, double voxelSize) {
     auto accessor = mask->getAccessor();
     const Vec3d c = centre * (1 / voxelSize);
     const double r = radius / voxelSize;
-    for (int x = int(std::ceil(c.x - r)); x <= int(std::floor(c.x + r)); ++x)
-        for (int y = int(std::ceil(c.y - r)); y <= int(std::floor(c.y + r)); ++y)
-            for (int z = int(std::ceil(c.z - r)); z <= int(std::floor(c.z + r)); ++z)
-                if (length(Vec3d{double(x), double(y), double(z)} - c) <= r)
-                    accessor.setValueOn(openvdb::Coord(x, y, z), true);
+    IndexBox around;
+    for (int axis = 0; axis < 3; ++axis) {
+        around.min[axis] = int(std::ceil(c[axis] - r));
+        around.max[axis] = int(std::floor(c[axis] + r));
+    }
+    forEachVoxel(around, [&](const Index3& p) {
+        if (length(Vec3d{double(p.x), double(p.y), double(p.z)} - c) <= r)
+            accessor.setValueOn(toCoord(p), true);
+    });
     return mask;
 }
 

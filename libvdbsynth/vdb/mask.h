@@ -7,14 +7,14 @@
 
 namespace vdbsynth {
 
-/// 1 where a grid of any type is active, else 0, over `box`, in a field that begins at 0.
-/// @throw Error BadData (a kind of grid that has no values, such as points)
-/// @param like  the model that the mask is for; @throw Error ShapeMismatch unless both have the same
-/// transform
+/// 1 where a grid of any type is active, else 0, over `box`, in a field whose box starts at 0.
+/// @throw Error BadData (a kind of grid without values, such as points)
+/// @param like  the model that the mask is for
+/// @throw Error ShapeMismatch unless both have the same transform
 BrickField gatherMask(const openvdb::GridBase& grid, const IndexBox& box, const openvdb::FloatGrid& like,
                       const RunContext& ctx = {});
 
-/// @throw Error ShapeMismatch unless the mask has the transform of the model that it is for
+/// @throw Error ShapeMismatch unless the mask has the transform of its model
 void requireMaskFor(const openvdb::GridBase& mask, const openvdb::FloatGrid& like);
 
 /// Box of a grid's active voxels. @throw Error EmptyInput (none)

@@ -11,24 +11,23 @@ namespace vdbsynth {
 /// Kinds of grids that a map is written as.
 enum class MapTypes {
     Integer,  ///< Vec3I, Int32, Vec3S and float
-    Float     ///< Vec3S and float only, which every reader knows (Debian's Python module refuses a file that
-              ///< holds others); exact for coordinates up to 2^24
+    Float  ///< Vec3S and float only, which every reader supports (Debian's Python module refuses files with
+           ///< other kinds); exact for coordinates up to 2^24
 };
 
-/// What has the largest weight at every active voxel of a result that a map says something about: of a
-/// synthesis those inside the target domain, of a fill those inside the hole, of an analogy those that have a
-/// source.
+/// The source with the largest weight at every active voxel of a result that a map covers: of a synthesis
+/// those inside the target domain, of a fill those inside the hole, of an analogy those that have a source.
 /// @par Cost    O(voxels * (block / stride)^3)   @par Repeats same bits for any number of threads
 std::vector<MappedVoxel> mappedVoxels(const SourceMap& map, const openvdb::FloatGrid& result,
                                       const RunContext& ctx = {});
 
-/// A map as grids in the result's voxels, on mappedVoxels, of an analogy on all voxels that have a source:
+/// A map as grids in the result's voxels, on mappedVoxels, for an analogy on all voxels that have a source:
 ///  - `source` Vec3I: the exemplar's voxel, `exemplar` Int32: its number;
-///  - where any is not 0, `source_offset` Vec3S: from that voxel to the place copied [voxels],
+///  - where any is not 0, `source_offset` Vec3S: from that voxel to the copied position [voxels],
 ///    `source_rotation` Vec3S: rotation vector [radians]; where any is not 1 `source_scale` float;
-///  - of a map by blocks on its lattice (indices are lattice coordinates) `vote_source` Vec3I: the block's
-///    place in the exemplar, or in the variant from 0; `vote_weight` float; of several exemplars or variants
-///    `vote_exemplar` Int32;
+///  - of a map by blocks, on its lattice (indices are lattice coordinates) `vote_source` Vec3I: the block's
+/// position in the exemplar, or in the variant from 0; `vote_weight` float; for several exemplars or
+/// variants `vote_exemplar` Int32;
 ///  - of a fill `source_hole` float: distances to the hole [voxels]; of an analogy with a mask
 ///    `source_strength` float;
 /// with the metadata that readSourceMap needs on `vote_source`, or on `source` of an analogy.
@@ -37,18 +36,18 @@ std::vector<GridPtr> sourceMapGrids(const SourceMap& map, const openvdb::FloatGr
                                     const RunContext& ctx = {}, MapTypes types = MapTypes::Integer);
 
 /// The map among the grids of a file. @param path  for messages
-/// @throw Error BadData (none, or one that contradicts itself)
+/// @throw Error BadData (none, or an inconsistent one)
 SourceMap sourceMapFrom(const std::string& path, const std::vector<GridPtr>& grids,
                         const RunContext& ctx = {});
 
 /// The same from a file, which is read once. @throw Error BadData, Io
 SourceMap readSourceMap(const std::string& path, const RunContext& ctx = {});
 
-/// `source` and `exemplar` of any map as they are, without checks against exemplars: what `compare` looks at.
-/// Without an `exemplar` grid all are 0.
-/// @return empty where the grids have no `source` of a kind that a map has
+/// `source` and `exemplar` of any map as they are, unchecked against exemplars, for `compare`. Without an
+/// `exemplar` grid all are 0.
+/// @return empty if the grids have no `source` of a kind that a map has
 std::vector<MappedVoxel> strongestSourcesIn(const std::vector<GridPtr>& grids);
-/// True if there is a grid `source` whose voxels lie as those of `like`.
+/// True if there is a grid `source` whose voxels are aligned with those of `like`.
 bool hasSourcesIn(const std::vector<GridPtr>& grids, const openvdb::FloatGrid& like);
 
 /// True for the names of grids that a source map consists of.

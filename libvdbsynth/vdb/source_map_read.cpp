@@ -1,4 +1,4 @@
-// A source map out of grids that anybody may have written.
+// Reads a source map from grids that any program may have written.
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/vdb/coord.h"
@@ -17,8 +17,8 @@ namespace {
 
 using namespace mapfile;
 
-constexpr double kFarthest = 1 << 30;          // [voxels] of any coordinate
-constexpr double kMostVoxels = 2e9;            // of the lattice, of voxels with a source
+constexpr double kFarthest = 1 << 30;          // [voxels] limit of any coordinate
+constexpr double kMostVoxels = 2e9;            // limit of the lattice, and of voxels with a source
 constexpr std::int64_t kMostHole = 1ll << 33;  // [voxels] of a hole's or a mask's box
 
 std::vector<std::string> splitAt(const std::string& text, char separator) {
@@ -75,7 +75,7 @@ public:
         if (values.size() != count) refuse(name);
         return values;
     }
-    // A whole number among reals, within what an int and our boxes hold.
+    // A whole number among reals, within the range of int and of boxes.
     int wholeOf(const std::string& name, double value) const {
         if (value != std::floor(value) || std::abs(value) > kFarthest) refuse(name);
         return int(value);
@@ -96,7 +96,7 @@ GridPtr gridNamed(const std::vector<GridPtr>& grids, const std::string& name) {
     return nullptr;
 }
 
-// Reads numbers, whole or not, of either kind of grid; `missing` where the grid is not there.
+// Reads scalars, integer or real, of either kind of grid; `missing` without the grid.
 using NumberReader = std::function<double(const openvdb::Coord&)>;
 using VectorReader = std::function<Vec3d(const openvdb::Coord&)>;
 
@@ -109,7 +109,7 @@ NumberReader numberReader(const std::string& path, const GridPtr& grid, double m
     if (const auto real = openvdb::gridPtrCast<openvdb::FloatGrid>(grid))
         return
             [real, at = real->getConstAccessor()](const openvdb::Coord& c) { return double(at.getValue(c)); };
-    throw Error(ErrorCode::BadData, path + ": grid \"" + grid->getName() + "\" is not of numbers");
+    throw Error(ErrorCode::BadData, path + ": grid \"" + grid->getName() + "\" does not hold scalars");
 }
 
 VectorReader vectorReader(const std::string& path, const GridPtr& grid) {
@@ -122,10 +122,10 @@ VectorReader vectorReader(const std::string& path, const GridPtr& grid) {
         return [real, at = real->getConstAccessor()](const openvdb::Coord& c) {
             return vectorOf(at.getValue(c));
         };
-    throw Error(ErrorCode::BadData, path + ": grid \"" + grid->getName() + "\" is not of vectors");
+    throw Error(ErrorCode::BadData, path + ": grid \"" + grid->getName() + "\" does not hold vectors");
 }
 
-// Calls body(place) for every active voxel of a grid of vectors. @return false if it has active tiles
+// Calls body(position) for every active voxel of a grid of vectors. @return false if it has active tiles
 bool everyVoxel(const GridPtr& grid, const std::function<void(const openvdb::Coord&)>& body) {
     const auto each = [&](const auto& typed) {
         bool tiles = false;
@@ -173,7 +173,7 @@ private:
 
     void readMethod() {
         if (mEntries.text("format") != kFormat)
-            refuse("was written by another version of vdb_synth; make it again");
+            refuse("was written by another version of vdb_synth; create it again");
         const std::string method = mEntries.has("method") ? mEntries.text("method") : "synthesis";
         mMap.method = method == "fill"      ? MapMethod::Fill
                       : method == "analogy" ? MapMethod::Analogy
@@ -185,7 +185,7 @@ private:
                                : kernel == kVoteKernel || kernel == kFirstKernel;
         if (!known || (method != "synthesis" && mMap.method == MapMethod::Synthesis) ||
             (mMap.method == MapMethod::Analogy) != (mMain->getName() == "source"))
-            refuse("was written by another version of vdb_synth; make it again");
+            refuse("was written by another version of vdb_synth; create it again");
     }
 
     void readExemplars() {
@@ -240,18 +240,16 @@ private:
         if (active.empty() || IndexBox(fromBBox(active)).volume() > kMostHole)
             refuse("has a bad grid \"" + name + "\"");
         corner = fromBBox(active).min;
-        // Accessors are not shared between threads; this field is small beside a synthesis.
+        // Accessors are not shared between threads; this field is small compared with a synthesis.
         const auto values = grid->getConstAccessor();
         RunContext alone;
         alone.threads = 1;
         bool good = true;
-        BrickField field = BrickField::generate(
-            IndexBox::fromSize(fromBBox(active).size()), alone, [&](const IndexBox& brick, float* samples) {
-                for (int i = 0; i < BrickField::kSamples; ++i) {
-                    const Index3 p = brick.min + Index3{i >> 6, (i >> 3) & 7, i & 7};
-                    samples[i] = values.getValue(toCoord(corner + p));
-                    good = good && samples[i] >= low && samples[i] <= high;
-                }
+        BrickField field =
+            BrickField::fromVoxels(IndexBox::fromSize(fromBBox(active).size()), alone, [&](const Index3& p) {
+                const float value = values.getValue(toCoord(corner + p));
+                good = good && value >= low && value <= high;
+                return value;
             });
         if (!good) refuse("has values out of range in grid \"" + name + "\"");
         return field;
@@ -267,19 +265,19 @@ private:
         const auto within = [](const Vec3d& v, double most) { return length(v) <= most; };  // false for NaN
         const bool voxels = everyVoxel(mMain, [&](const openvdb::Coord& at) {
             Source source;
-            const Vec3d from = place(at), by = offset(at), turn = rotation(at);
+            const Vec3d from = place(at), by = offset(at), rotationVector = rotation(at);
             const double number = exemplar(at), size = scale(at);
-            if (!within(from, kFarthest) || !within(by, 2) || !within(turn, 100) ||
+            if (!within(from, kFarthest) || !within(by, 2) || !within(rotationVector, 100) ||
                 !(size > 0 && size < 100) || !(number >= 0 && number < 64 && number == std::floor(number)))
                 refuse("has a bad source at " + std::to_string(at.x()) + "," + std::to_string(at.y()) + "," +
                        std::to_string(at.z()));
             source.exemplar = std::int32_t(number);
             source.position = from + by;
-            source.rotation = cast<float>(turn);
+            source.rotation = cast<float>(rotationVector);
             source.scale = float(size);
             mMap.elements.add(fromCoord(at), source);
         });
-        if (!voxels) refuse("has tiles where single voxels belong");
+        if (!voxels) refuse("has tiles instead of single voxels");
     }
 
     void readBlocks() {
@@ -298,8 +296,8 @@ private:
         const Index3 lattice = patches.lattice();
         const double blocks = double(lattice.x) * double(lattice.y) * double(lattice.z);
         if (double(mMain->activeVoxelCount()) != blocks || blocks > kMostVoxels)
-            refuse("has " + std::to_string(mMain->activeVoxelCount()) + " blocks where " +
-                   roundedText(blocks, 12) + " belong");
+            refuse("has " + std::to_string(mMain->activeVoxelCount()) + " blocks instead of " +
+                   roundedText(blocks, 12));
         patches.allocate();
         readSources(lattice);
     }
@@ -346,7 +344,7 @@ private:
             patches.source[i] =
                 Index3{int(std::lround(from.x)), int(std::lround(from.y)), int(std::lround(from.z))} - corner;
         });
-        if (!voxels) refuse("has tiles where single blocks belong");
+        if (!voxels) refuse("has tiles instead of single blocks");
     }
 
     const std::string& mPath;
@@ -364,9 +362,8 @@ SourceMap sourceMapFrom(const std::string& path, const std::vector<GridPtr>& gri
     GridPtr main = gridNamed(grids, "vote_source");
     if (!main) main = gridNamed(grids, "source");
     if (!main)
-        throw Error(
-            ErrorCode::BadData,
-            path + ": holds no source map, such as synth and analogy write where they are asked for one");
+        throw Error(ErrorCode::BadData,
+                    path + ": holds no source map; synth and analogy write one on request");
     return Reader(path, grids, main).read();
 }
 

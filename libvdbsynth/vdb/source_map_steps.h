@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-// What the writer and the reader of source maps share; for their .cpp files only.
+// Shared by the writer and the reader of source maps; for their .cpp files only.
 namespace vdbsynth::mapfile {
 
 inline constexpr const char* kFormat = "2";

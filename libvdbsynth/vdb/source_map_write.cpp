@@ -54,13 +54,13 @@ std::string depthsText(const std::vector<DepthRun>& depths) {
     return text;
 }
 
-// Grids of one kind or the other behind the same calls.
+// Grids of one kind or the other behind the same functions.
 class Writer {
 public:
     Writer(MapTypes types, const openvdb::math::Transform& transform)
         : mTypes(types), mTransform(transform) {}
 
-    /// A grid of whole vectors.
+    /// A grid of integer vectors.
     GridPtr places(const char* name, const std::vector<std::pair<openvdb::Coord, Vec3d>>& values) const {
         if (mTypes == MapTypes::Integer)
             return filled(openvdb::Vec3IGrid::create(openvdb::Vec3i(0)), name, values,
@@ -68,8 +68,8 @@ public:
         for (const auto& [at, v] : values)
             if (std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) > kExactFloat)
                 throw Error(ErrorCode::Unusable,
-                            "`mapTypes` float holds coordinates up to 2^24 exactly, and the exemplar's go "
-                            "beyond; write the map with integer");
+                            "`mapTypes` float holds coordinates up to 2^24 exactly, and the exemplar's are "
+                            "larger; use integer");
         return vectors(name, values);
     }
     GridPtr vectors(const char* name, const std::vector<std::pair<openvdb::Coord, Vec3d>>& values) const {
@@ -102,7 +102,7 @@ private:
     const openvdb::math::Transform& mTransform;
 };
 
-// Sources as they are at the result's voxels.
+// Sources unchanged, at the result's voxels.
 std::vector<GridPtr> voxelGrids(const std::vector<MappedVoxel>& voxels, const Writer& writer) {
     std::vector<std::pair<openvdb::Coord, Vec3d>> places, offsets, rotations;
     std::vector<std::pair<openvdb::Coord, std::int32_t>> exemplars;
@@ -128,7 +128,7 @@ std::vector<GridPtr> voxelGrids(const std::vector<MappedVoxel>& voxels, const Wr
     return grids;
 }
 
-// The blocks on their lattice; the grid of their places first.
+// The blocks on their lattice; the grid of their positions first.
 std::vector<GridPtr> blockGrids(const SourceMap& map, MapTypes types) {
     const openvdb::math::Transform::Ptr unit = openvdb::math::Transform::createLinearTransform();
     const Writer writer(types, *unit);
@@ -230,7 +230,7 @@ std::vector<MappedVoxel> elementVoxels(const SourceMap& map, const openvdb::Floa
     return voxels;
 }
 
-// Values as they are, active over the field's box.
+// Values unchanged, active over the field's box.
 GridPtr fieldGrid(const char* name, const BrickField& field, const Index3& corner,
                   const openvdb::math::Transform& transform) {
     const openvdb::FloatGrid::Ptr grid = openvdb::FloatGrid::create(0.f);
@@ -270,7 +270,7 @@ std::vector<GridPtr> sourceMapGrids(const SourceMap& map, const openvdb::FloatGr
     Stage stage(ctx, "source map", 1);
     std::vector<MappedVoxel> voxels;
     if (map.method != MapMethod::Analogy) voxels = mappedVoxels(map, result, ctx);
-    // Beyond the result's band too: another texture's surface may lie there.
+    // Beyond the result's band too: another texture's surface may be there.
     for (std::size_t i = 0; i < map.elements.size(); ++i)
         voxels.push_back({map.elements.voxels()[i], *map.elements.strongest(i)});
     std::vector<GridPtr> grids = voxelGrids(voxels, Writer(types, result.transform()));

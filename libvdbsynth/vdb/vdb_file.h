@@ -23,12 +23,12 @@ struct GridSummary {
     std::vector<std::pair<std::string, std::string>> metadata;
 };
 
-/// @throw Error InvalidOption (one is null); every function here that takes grids does so
+/// @throw Error InvalidOption (one is null), as for every function here that takes grids
 void requireGrids(const std::vector<GridPtr>& grids);
 
 std::vector<GridSummary> summarizeGrids(const std::vector<GridPtr>& grids);
 
-/// File metadata, as name and value.
+/// File metadata: names and values.
 using VdbMetadata = std::vector<std::pair<std::string, std::string>>;
 
 struct VdbContents {
@@ -36,7 +36,7 @@ struct VdbContents {
     VdbMetadata metadata;
 };
 
-/// All of a file. A grid of a kind that this OpenVDB does not know is left out with a warning.
+/// All of a file. A grid of a kind that this OpenVDB does not support is left out with a warning.
 /// @throw Error Io (missing, a directory, not readable), BadData (not a VDB file, truncated, corrupt)
 VdbContents readVdb(const std::string& path, const RunContext& ctx = {});
 
@@ -46,12 +46,12 @@ struct VdbReadOptions {
     std::optional<double> iso;  ///< a fog volume is solid where its value is above this
 };
 
-/// @throw Error InvalidOption (an iso that is no number)
+/// @throw Error InvalidOption (an iso that is not finite)
 void validate(const VdbReadOptions& options);
 
-/// Reads a model from a VDB file made by anyone: level sets as they are (a half-precision file as floats,
-/// an anisotropic or sheared transform resampled to its smallest voxel), fog volumes by `iso`.
-/// A recorded domain is kept; else the domain is the box of the solid.
+/// Reads a model from any VDB file: level sets unchanged (half precision as floats, an anisotropic or sheared
+/// transform resampled to its smallest voxel), fog volumes by `iso`. A recorded domain is kept; else the
+/// domain is the box of the solid.
 /// @throw Error  Io (missing, a directory, not readable), BadData (not a VDB file, truncated, corrupt, NaN,
 ///               no usable grid, frustum transform), InvalidOption (an iso that is no number, null grids),
 ///               Unusable (a fog volume without iso), EmptyInput (no surface)
@@ -59,20 +59,20 @@ void validate(const VdbReadOptions& options);
 LevelSet readVdbModel(const std::string& path, const VdbReadOptions& options = {},
                       const RunContext& ctx = {});
 
-/// The same from grids that were read, which stay as they are; a level set's tree is shared with the result.
+/// The same from grids in memory, which are not changed; the result shares a level set's tree.
 /// @param path  for messages
 LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& grids,
                         const VdbReadOptions& options = {}, const RunContext& ctx = {});
 
-/// The one of the grids that modelFromGrids makes the model of. @throw Error BadData (none is usable)
+/// The grid that modelFromGrids would convert. @throw Error BadData (none is usable)
 GridPtr pickedGrid(const std::string& path, const std::vector<GridPtr>& grids,
                    const VdbReadOptions& options = {});
 
-/// The model at another voxel size, its domain the same box of the world in whole voxels. A level set is read
-/// by its zero level, so detail under a voxel is lost, never made. @throw Error EmptyInput, Memory
+/// The model at another voxel size; its domain is the same box of the world in whole voxels. A level set is
+/// resampled by its zero level, so detail under a voxel is lost, never added. @throw Error EmptyInput, Memory
 LevelSet resampled(const LevelSet& model, double voxelSize, const RunContext& ctx = {});
 
-/// Reads a float or double grid as it is: the named one, or the only one. @throw Error as readVdbModel
+/// Reads a float or double grid unchanged: the named one, or the only one. @throw Error as readVdbModel
 FloatGridPtr readVdbFloatGrid(const std::string& path, const std::string& name, const RunContext& ctx = {});
 /// Reads one named grid of any type. @throw Error as readVdbModel
 GridPtr readVdbGrid(const std::string& path, const std::string& name, const RunContext& ctx = {});

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <memory>
 
-// Declares openvdb::FloatGrid and openvdb::GridBase without their headers, so that a header can speak
-// of grids for 0.1 s instead of 2 s. Written against OpenVDB 10; the alias below must name the same
-// type as openvdb/openvdb.h does, or a file that includes both does not compile.
+// Declares openvdb::FloatGrid and openvdb::GridBase without their headers, so that a header that names grids
+// costs 0.1 s instead of 2 s. Written against OpenVDB 10; the alias below must name the same type as
+// openvdb/openvdb.h, or a file that includes both does not compile.
 namespace openvdb {
 OPENVDB_USE_VERSION_NAMESPACE
 namespace OPENVDB_VERSION_NAME {

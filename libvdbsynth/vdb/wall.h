@@ -10,8 +10,8 @@
 
 namespace vdbsynth {
 
-/// Runs `work` and turns what OpenVDB throws into the library's one exception type.
-/// @param what  what the error is about, for example a path; begins the message
+/// Runs `work` and converts OpenVDB's exceptions into the library's one exception type.
+/// @param what  begins the message, for example a path
 template <typename Work>
 auto behindWall(ErrorCode code, const std::string& what, Work&& work) -> decltype(work()) {
     try {
@@ -29,7 +29,7 @@ auto behindWall(ErrorCode code, const std::string& what, Work&& work) -> decltyp
 }
 
 /// Lets OpenVDB's tools stop when the context is cancelled. Pass it as util::NullInterrupter&: a tool
-/// instantiated for this type itself takes 37 s to compile instead of 8 s.
+/// instantiated for this type takes 37 s to compile instead of 8 s.
 class Interrupter final : public openvdb::util::NullInterrupter {
 public:
     explicit Interrupter(const RunContext& ctx) : mContext(ctx) {}

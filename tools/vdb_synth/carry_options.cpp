@@ -1,25 +1,25 @@
 #include "tools/vdb_synth/carry_options.h"
 
 #include "libvdbsynth/base/error.h"
-#include "libvdbsynth/pipeline/carry.h"
+#include "libvdbsynth/vdb/attribute_transfer.h"
 
 namespace vdbsynth::cli {
 
-void keepCarried(const Arguments& arguments, std::vector<LevelSet>& exemplars) {
+void keepNamedAttributes(const Arguments& arguments, std::vector<LevelSet>& exemplars) {
     const std::string text = arguments.text("carry");
     if (text == "all") return;
     for (const std::string& name : splitAtCommas(text)) {
         bool found = false;
-        for (const LevelSet& exemplar : exemplars) found = found || carries(exemplar, name);
+        for (const LevelSet& exemplar : exemplars) found = found || hasAttribute(exemplar, name);
         if (!found)
             throw Error(ErrorCode::InvalidOption,
-                        "--carry " + name + ": must be all, or names of what comes with the exemplar");
+                        "--carry " + name + ": must be all, or names of attributes or grids of the exemplar");
     }
-    for (LevelSet& exemplar : exemplars) keepCarriedNames(exemplar, splitAtCommas(text));
+    for (LevelSet& exemplar : exemplars) keepAttributes(exemplar, splitAtCommas(text));
 }
 
-CarriedValues carriedValues(const Arguments& arguments) {
-    return arguments.has("carry-blend") ? CarriedValues::Blended : CarriedValues::Copied;
+AttributeValues attributeValues(const Arguments& arguments) {
+    return arguments.has("carry-blend") ? AttributeValues::Blended : AttributeValues::Copied;
 }
 
 }  // namespace vdbsynth::cli

@@ -1,15 +1,15 @@
 #pragma once
-#include "libvdbsynth/pipeline/synth.h"
+#include "libvdbsynth/pipeline/synth/synth.h"
 #include "tools/vdb_synth/option_set.h"
 
 #include <vector>
 
 namespace vdbsynth::cli {
 
-/// Leaves behind what --carry does not name. @throw Error InvalidOption (a name that no exemplar carries)
-void keepCarried(const Arguments& arguments, std::vector<LevelSet>& exemplars);
+/// Drops the attributes that --carry does not name. @throw Error InvalidOption (a name that no exemplar has)
+void keepNamedAttributes(const Arguments& arguments, std::vector<LevelSet>& exemplars);
 
-/// By --carry-blend.
-CarriedValues carriedValues(const Arguments& arguments);
+/// From --carry-blend.
+AttributeValues attributeValues(const Arguments& arguments);
 
 }  // namespace vdbsynth::cli

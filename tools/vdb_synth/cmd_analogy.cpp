@@ -6,10 +6,10 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/path.h"
-#include "libvdbsynth/pipeline/analogy.h"
-#include "libvdbsynth/pipeline/control.h"
-#include "libvdbsynth/pipeline/filter_analogy.h"
-#include "libvdbsynth/pipeline/outputs.h"
+#include "libvdbsynth/pipeline/analogy/analogy.h"
+#include "libvdbsynth/pipeline/analogy/filter_analogy.h"
+#include "libvdbsynth/pipeline/convert/outputs.h"
+#include "libvdbsynth/vdb/control_grids.h"
 
 #include <nlohmann/json.hpp>
 
@@ -42,7 +42,7 @@ AnalogyOptions parseOptions(const Arguments& arguments) {
     return options;
 }
 
-// A, A2, C, C2, ..., B. The first voxel size of a pair holds for both; the target has its own.
+// A, A2, C, C2, ..., B. The second of a pair is loaded at the first's voxel size; the target has its own.
 struct Models {
     std::vector<LevelSet> pairs;
     LevelSet target;
@@ -55,7 +55,7 @@ Models loadModels(Run& run) {
     ModelOptions options = run.modelOptions();
     options.halfWidth = 3;
     ModelOptions pair = options;
-    // --voxel-size and --resolution are the target's where it is a mesh; a pair has its own.
+    // --voxel-size and --resolution apply to the target; a mesh A has --exemplar-resolution.
     pair.voxelSize = 0;
     pair.resolution = run.arguments.whole("exemplar-resolution");
     pair.grid.clear();
@@ -115,12 +115,12 @@ FloatGridPtr loadNumbers(Run& run, const std::string& path, const std::string& g
     run.noteInput(path);
     if (!isGridOfNumbers(numbers))
         throw Error(ErrorCode::Unusable, path +
-                                             ": is a level set, but the first input is a grid of numbers; "
-                                             "give --iso to make a level set of that, or numbers for all");
+                                             ": is a level set, but the first input is a scalar grid; give "
+                                             "--iso to convert scalar grids, or give scalar grids only");
     return numbers;
 }
 
-// --naive on grids of numbers: nothing is made a level set.
+// With --naive, scalar grids are filtered as they are, without conversion to level sets.
 bool isFilter(Run& run) {
     const Arguments& arguments = run.arguments;
     if (!arguments.has("naive") || arguments.has("iso") || extensionOf(arguments.inputs[0]) != "vdb")
@@ -136,9 +136,9 @@ void reportFilter(Run& run, const FilterAnalogyStats& stats) {
     run.count("searched", stats.searched);
     if (stats.change > 0)
         message(run.context, MessageLevel::Note,
-                "on voxels held out the filter is off by " +
+                "on held-out voxels the filter's RMS error is " +
                     roundedText(std::min(stats.affineError, stats.searchError) / stats.change, 3) +
-                    " of what it changes (root mean squares)");
+                    " of its RMS change");
 }
 
 void filter(Run& run, const VolumeAnalogyOptions& synthesis) {
@@ -147,14 +147,14 @@ void filter(Run& run, const VolumeAnalogyOptions& synthesis) {
                              "straight", "sweeps", "coherence", "coarse-samples", "adaptivity", "map-types"})
         if (arguments.has(name))
             throw Error(ErrorCode::InvalidOption,
-                        "--" + std::string(name) + ": has no meaning for grids of numbers with --naive");
+                        "--" + std::string(name) + ": has no effect on scalar grids with --naive");
     FilterAnalogyOptions options;
     options.half = synthesis.half;
     options.components = synthesis.components;
     if (synthesis.levels > 0) options.levels = std::min(synthesis.levels, 4);
     for (const std::string& path : run.outputPaths())
         if (extensionOf(path) != "vdb")
-            throw Error(ErrorCode::InvalidOption, path + ": grids of numbers are written as .vdb");
+            throw Error(ErrorCode::InvalidOption, path + ": scalar grids are written as .vdb only");
     std::vector<FilterGridPair> pairs;
     for (std::size_t i = 0; i + 1 < arguments.inputs.size(); i += 2) {
         const FloatGridPtr before = loadNumbers(run, arguments.inputs[i], "");
@@ -172,11 +172,10 @@ void analogy(Run& run) {
     const Arguments& arguments = run.arguments;
     run.requireInputs(3, 33);
     if (arguments.inputs.size() % 2 == 0)
-        throw Error(
-            ErrorCode::InvalidOption,
-            "an even number of inputs; give pairs, each plain then textured, and the target last; usage: "
-            "vdb_synth " +
-                std::string(kAnalogy.usage));
+        throw Error(ErrorCode::InvalidOption,
+                    "an even number of inputs; give pairs, each plain then textured, and the target last; "
+                    "usage: vdb_synth " +
+                        std::string(kAnalogy.usage));
     AnalogyOptions options = parseOptions(arguments);
     const std::vector<std::string> paths = run.outputPaths();
     if (isFilter(run)) {
@@ -185,12 +184,11 @@ void analogy(Run& run) {
     }
     const MapPlace place = mapPlaceOf(arguments, paths);
     if (options.keepDirections && !anyVdb(paths))
-        throw Error(ErrorCode::InvalidOption,
-                    "--write-directions: goes into a .vdb output, and there is none");
+        throw Error(ErrorCode::InvalidOption, "--write-directions: needs a .vdb output");
     ModelOutputOptions outputs;
     outputs.adaptivity = arguments.real("adaptivity");
     Models models = loadModels(run);
-    keepCarried(arguments, models.pairs);
+    keepNamedAttributes(arguments, models.pairs);
     loadMask(run, voxelSizeOf(*models.target.grid), options);
     options.direction = directionOf(run, "direction");
     options.exemplarDirection = directionOf(run, "exemplar-direction");
@@ -208,7 +206,7 @@ void analogy(Run& run) {
 
 const Command kAnalogy{
     "analogy", "analogy A A2 [C C2 ...] B -o OUT [options]",
-    "Transfer the texture that A2 has and A has not to another model B",
+    "Transfer the texture that A2 adds to A to another model B",
     "vdb_synth analogy A.vdb A2.vdb bunny.off --resolution 200 --direction axis:z -o grooved.vdb", analogy};
 
 }  // namespace vdbsynth::cli

@@ -2,8 +2,8 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
-#include "libvdbsynth/pipeline/compare.h"
-#include "libvdbsynth/vdb/preview.h"
+#include "libvdbsynth/pipeline/compare/compare.h"
+#include "libvdbsynth/render/preview.h"
 #include "tools/vdb_synth/compare_report.h"
 
 #include <nlohmann/json.hpp>
@@ -40,28 +40,28 @@ void compare(Run& run) {
     if (run.arguments.has("process")) readProcess(run.arguments.text("process"), options.process.emplace());
     options.fresh = run.arguments.whole("fresh");
     if (run.arguments.has("fresh") && !options.process)
-        throw Error(ErrorCode::InvalidOption, "--fresh: needs --process, which says what to draw afresh");
+        throw Error(ErrorCode::InvalidOption, "--fresh: needs --process, the process to sample");
     const std::vector<std::string>& paths = run.arguments.inputs;
     for (const std::string& path : paths) requireModelPath(path);
     if (run.arguments.has("map") && paths.size() != 2)
-        throw Error(ErrorCode::InvalidOption, "--map: belongs to one OTHER; several are given");
+        throw Error(ErrorCode::InvalidOption, "--map: belongs to one OTHER, but several are given");
     ModelOptions modelOptions = run.modelOptions();
     const CompareInput reference = inputOf(run, paths[0], run.load(paths[0], modelOptions));
-    // With several models the first one's voxel size holds for all.
+    // All models are loaded at the first one's voxel size.
     modelOptions.voxelSize = voxelSizeOf(*reference.model.grid);
     modelOptions.resolution = 0;
     modelOptions.carry = true;
     std::vector<CompareInput> others;
     for (std::size_t i = 1; i < paths.size(); ++i) {
         others.push_back(inputOf(run, paths[i], run.load(paths[i], modelOptions)));
-        takeSourceMap(others.back().model.carried, others.back());
+        takeSourceMap(others.back().model.attributes, others.back());
     }
     if (run.arguments.has("map")) {
         const std::string path = run.arguments.text("map");
         const bool taken = takeSourceMap(readVdbGrids(path, run.context), others.front());
         run.noteInput(path);
         if (!taken)
-            throw Error(ErrorCode::BadData, path + ": has no grid \"source\" in the voxels of " +
+            throw Error(ErrorCode::BadData, path + ": has no grid \"source\" that matches the voxels of " +
                                                 others.front().name + "; synth --source-map writes one");
     }
     const Comparison comparison = compareModels(reference, others, options, run.context);

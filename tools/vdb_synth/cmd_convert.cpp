@@ -2,14 +2,14 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
-#include "libvdbsynth/pipeline/outputs.h"
+#include "libvdbsynth/pipeline/convert/outputs.h"
 
 #include <nlohmann/json.hpp>
 
 namespace vdbsynth::cli {
 namespace {
 
-// --as says what to write where the extension may be several things; volume says what to take the input for.
+// --as chooses what to write where an extension allows several kinds; volume: reads an image as a volume.
 void requireKind(const std::string& as, const std::string& path) {
     const std::string extension = extensionOf(path);
     const bool heights = extension == "png" || extension == "exr";

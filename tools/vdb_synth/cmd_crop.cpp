@@ -1,8 +1,8 @@
 #include "tools/vdb_synth/command.h"
 
 #include "libvdbsynth/base/error.h"
-#include "libvdbsynth/pipeline/crop.h"
-#include "libvdbsynth/pipeline/outputs.h"
+#include "libvdbsynth/pipeline/convert/outputs.h"
+#include "libvdbsynth/pipeline/crop/crop.h"
 
 #include <nlohmann/json.hpp>
 

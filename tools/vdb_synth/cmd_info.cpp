@@ -25,7 +25,7 @@ Json triple(const Index3& v) {
 
 Json meshInfo(const std::string& path, const Run& run) {
     Mesh mesh = readMesh(path, run.context);
-    // Vertices that a seam of the texture parts are one place of the surface.
+    // Vertices that a texture seam splits are one point of the surface.
     if (findAttribute(mesh.attributes, "uv")) weldVertices(mesh);
     const MeshSummary s = summarize(mesh);
     return Json{{"file", run.withoutTemporaries(path)},
@@ -175,7 +175,7 @@ void info(Run& run) {
 }  // namespace
 
 const Command kInfo{"info", "info IN [--json] [-o OUT.json]",
-                    "Say what is in a file: grids or faces, sizes, ranges, validity",
+                    "Print what is in a file: grids or faces, sizes, ranges, validity",
                     "vdb_synth info grid.vdb", info};
 
 }  // namespace vdbsynth::cli

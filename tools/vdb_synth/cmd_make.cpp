@@ -1,8 +1,8 @@
 #include "tools/vdb_synth/command.h"
 
 #include "libvdbsynth/base/error.h"
-#include "libvdbsynth/pipeline/make.h"
-#include "libvdbsynth/pipeline/outputs.h"
+#include "libvdbsynth/pipeline/convert/outputs.h"
+#include "libvdbsynth/pipeline/make/make.h"
 #include "libvdbsynth/procedural/analogy_pair.h"
 
 #include <nlohmann/json.hpp>
@@ -17,12 +17,12 @@ bool isPair(const std::string& kind) {
     return std::any_of(kinds.begin(), kinds.end(), [&](const AnalogyPairKind& k) { return k.name == kind; });
 }
 
-// make KIND OUT OUT2: a plain model and the same with a texture.
+// make KIND OUT OUT2: a plain model and a textured copy.
 void makeTwo(Run& run, const MakeOptions& options) {
     const std::vector<std::string> paths(run.arguments.inputs.begin() + 1, run.arguments.inputs.end());
     if (paths.size() != 2 || run.arguments.has("output"))
         throw Error(ErrorCode::InvalidOption, "make " + options.exemplar.kind +
-                                                  ": is a pair; give two outputs, vdb_synth make " +
+                                                  ": writes a pair; give two outputs: vdb_synth make " +
                                                   options.exemplar.kind + " A.vdb A2.vdb");
     if (run.arguments.has("size"))
         throw Error(ErrorCode::InvalidOption,
@@ -78,7 +78,7 @@ std::string summary() {
         text += (first ? "" : ", ") + kind.name;
         first = false;
     }
-    text += "; or an analogy's pair (OUT plain, OUT2 textured): ";
+    text += "; or a pair for analogy (OUT plain, OUT2 textured): ";
     first = true;
     for (const AnalogyPairKind& kind : analogyPairKinds()) {
         text += (first ? "" : ", ") + kind.name;

@@ -57,7 +57,7 @@ void mask(Run& run) {
             throw Error(ErrorCode::InvalidOption, "mask box: give --box i,j,k,I,J,K");
         const IndexBox box = run.arguments.box("box");
         const Vec3d s{double(box.size().x), double(box.size().y), double(box.size().z)};
-        // Leaves along the surface, a tile of 128^3 in the middle.
+        // Leaf nodes along the surface, tiles of 128^3 inside.
         requireMemory(run.context,
                       (s.x * s.y + s.y * s.z + s.z * s.x) / 32 * 128 + s.x * s.y * s.z / 2e6 * 64,
                       "a mask of " + boxText(box), "use a smaller --box");

@@ -3,7 +3,7 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
-#include "libvdbsynth/pipeline/match.h"
+#include "libvdbsynth/pipeline/match/match.h"
 
 #include <nlohmann/json.hpp>
 
@@ -12,7 +12,7 @@
 namespace vdbsynth::cli {
 namespace {
 
-// What --tolerance promises and what --check found.
+// The bound that --tolerance guarantees and the values that --check measured.
 std::string checked(const MatchOptions& options, const MatchResult& result) {
     if (options.tolerance == 0) return "";
     const auto line = [](const char* name, double value) {
@@ -42,7 +42,7 @@ void match(Run& run) {
     const LevelSet exemplar = run.load(run.arguments.inputs[0]);
     ModelOptions queryOptions = run.modelOptions();
     if (readExtensionOf(run.arguments.inputs[1]) != "vdb") {
-        // With several models the first one's voxel size holds for all.
+        // All models are loaded at the first one's voxel size.
         queryOptions.voxelSize = voxelSizeOf(*exemplar.grid);
         queryOptions.resolution = 0;
     }

@@ -3,7 +3,7 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/png_file.h"
-#include "libvdbsynth/vdb/preview.h"
+#include "libvdbsynth/render/preview.h"
 
 namespace vdbsynth::cli {
 namespace {
@@ -32,7 +32,7 @@ void render(Run& run) {
         slice.fraction = where.fraction;
     }
     if (run.arguments.has("directions") && run.arguments.has("slice"))
-        throw Error(ErrorCode::InvalidOption, "--directions: are drawn on a surface, not on a --slice");
+        throw Error(ErrorCode::InvalidOption, "--directions: cannot be combined with --slice");
     requireModelPath(run.arguments.inputs[0]);
     if (run.arguments.has("directions")) preview.directions = run.loadGrid("directions");
     const LevelSet model = run.load(run.arguments.inputs[0]);

@@ -4,8 +4,8 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/hash.h"
 #include "libvdbsynth/io/path.h"
-#include "libvdbsynth/pipeline/outputs.h"
-#include "libvdbsynth/pipeline/repeat.h"
+#include "libvdbsynth/pipeline/convert/outputs.h"
+#include "libvdbsynth/pipeline/repeat/repeat.h"
 #include "libvdbsynth/vdb/source_map_grids.h"
 
 #include <nlohmann/json.hpp>
@@ -17,7 +17,7 @@
 namespace vdbsynth::cli {
 namespace {
 
-// The models that a map is repeated on, as the command line has them.
+// The inputs that follow MAP, as the usage line names them.
 std::string wanted(const SourceMap& map) {
     std::string text;
     const bool analogy = map.method == MapMethod::Analogy;
@@ -29,8 +29,8 @@ std::string wanted(const SourceMap& map) {
     return text + (target == 0 ? "" : analogy ? " B" : " KEPT");
 }
 
-// The files of a run in the order in which repeat takes them, by their hashes; empty where the map's file
-// does not tell them, as when a program wrote it.
+// Hashes of the run's input files in the order in which repeat takes them; empty if the map's file does not
+// record them, as when another program wrote it.
 std::vector<std::string> filesOf(const SourceMap& map, const VdbMetadata& metadata) {
     std::vector<std::string> all, ordered;
     for (const auto& [name, value] : metadata) {
@@ -40,8 +40,8 @@ std::vector<std::string> filesOf(const SourceMap& map, const VdbMetadata& metada
         for (const nlohmann::json& input : inputs)
             all.push_back(input.is_object() ? input.value("hash", std::string()) : std::string());
     }
-    // As the commands note what they load: synth its exemplars; synth --keep the kept model and perhaps the
-    // hole's, and the exemplar last; analogy A, A2 for each pair, then B.
+    // Commands record their inputs as they load them: synth its exemplars; synth --keep the kept model, the
+    // hole's if it is a file, and the exemplar last; analogy A, A2 for each pair, then B.
     const std::size_t exemplars = map.exemplars.size();
     if (map.method == MapMethod::Synthesis && all.size() >= exemplars)
         ordered.assign(all.begin(), all.begin() + std::ptrdiff_t(exemplars));
@@ -54,14 +54,14 @@ std::vector<std::string> filesOf(const SourceMap& map, const VdbMetadata& metada
     return ordered;
 }
 
-// Models that are the run's own, each in another's place, would make nonsense.
+// Refuses the run's own models in another order: the result would be nonsense.
 void requireOrder(const Run& run, const SourceMap& map, const VdbMetadata& metadata) {
     const std::vector<std::string>& inputs = run.arguments.inputs;
     const std::vector<std::string> files = filesOf(map, metadata);
     if (files.size() + 1 != inputs.size()) return;
     for (std::size_t i = 0; i < files.size(); ++i) {
         std::error_code ignored;
-        if (!std::filesystem::is_regular_file(inputs[i + 1], ignored)) return;  // its reader says why
+        if (!std::filesystem::is_regular_file(inputs[i + 1], ignored)) return;  // its reader fails
         const std::string hash = fileHash(inputs[i + 1]);
         if (hash == files[i]) continue;
         for (std::size_t j = 0; j < files.size(); ++j)
@@ -73,7 +73,7 @@ void requireOrder(const Run& run, const SourceMap& map, const VdbMetadata& metad
     }
 }
 
-// The voxel size that a map of single voxels or of a hole asks of a model is its own affair.
+// Maps of single voxels or of a hole fix the voxel sizes of their models.
 void requireNoSize(const Run& run, const SourceMap& map) {
     if (map.method == MapMethod::Synthesis) return;
     for (const char* name : {"voxel-size", "resolution"})
@@ -81,13 +81,14 @@ void requireNoSize(const Run& run, const SourceMap& map) {
             throw Error(ErrorCode::InvalidOption,
                         std::string("--") + name + ": the map of " +
                             (map.method == MapMethod::Fill ? "a filled hole" : "an analogy") +
-                            " says at which voxel size its models are read" +
+                            " fixes the voxel sizes of its models" +
                             (map.method == MapMethod::Fill
                                  ? ""
                                  : "; for a finer result convert A2 to a half or a third of its voxels"));
 }
 
-// Every model at the voxel size that the map asks of it. A .vdb of exemplars may be finer; all else follows.
+// Loads every model at the voxel size that the map requires. The first .vdb exemplar may be finer; the other
+// models are then loaded finer by the same factor.
 std::vector<LevelSet> loadInputs(Run& run, const SourceMap& map) {
     const std::vector<std::string> paths(run.arguments.inputs.begin() + 1, run.arguments.inputs.end());
     ModelOptions options = run.modelOptions();
@@ -122,20 +123,21 @@ void repeat(Run& run) {
     ModelOutputOptions outputs;
     outputs.adaptivity = run.arguments.real("adaptivity");
     RepeatOptions options;
-    options.carried = carriedValues(run.arguments);
+    options.carried = attributeValues(run.arguments);
     if (run.arguments.has("half-width")) options.halfWidth = float(run.modelOptions().halfWidth);
     const VdbContents contents = readVdb(mapPath, run.context);
     const SourceMap map = sourceMapFrom(mapPath, contents.grids, run.context);
     run.noteInput(mapPath);
     if (run.arguments.inputs.size() - 1 != map.inputs())
         throw Error(ErrorCode::ShapeMismatch,
-                    mapPath + ": its map is repeated as: repeat MAP" + wanted(map) + "; " +
+                    mapPath + ": repeat this map as: repeat MAP" + wanted(map) + "; " +
                         std::to_string(run.arguments.inputs.size() - 1) +
-                        (run.arguments.inputs.size() == 2 ? " model is" : " models are") + " given after it");
+                        (run.arguments.inputs.size() == 2 ? " model was" : " models were") +
+                        " given after it");
     requireNoSize(run, map);
     requireOrder(run, map, contents.metadata);
     std::vector<LevelSet> models = loadInputs(run, map);
-    keepCarried(run.arguments, models);
+    keepNamedAttributes(run.arguments, models);
     std::vector<const LevelSet*> pointers;
     for (const LevelSet& model : models) pointers.push_back(&model);
     const LevelSet result = repeatMap(map, pointers, options, run.context);

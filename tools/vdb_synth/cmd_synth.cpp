@@ -5,10 +5,10 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
-#include "libvdbsynth/pipeline/control.h"
-#include "libvdbsynth/pipeline/fill.h"
-#include "libvdbsynth/pipeline/outputs.h"
-#include "libvdbsynth/pipeline/synth.h"
+#include "libvdbsynth/pipeline/convert/outputs.h"
+#include "libvdbsynth/pipeline/fill/fill.h"
+#include "libvdbsynth/pipeline/synth/synth.h"
+#include "libvdbsynth/vdb/control_grids.h"
 
 #include <nlohmann/json.hpp>
 
@@ -17,7 +17,7 @@
 namespace vdbsynth::cli {
 namespace {
 
-// Range and form were checked with all options.
+// Range and form were checked together with the other options.
 void readSize(const Arguments& arguments, SynthOptions& options) {
     if (!arguments.has("size"))
         throw Error(ErrorCode::InvalidOption,
@@ -54,7 +54,7 @@ SynthOptions parseOptions(const Arguments& arguments) {
     options.levels = arguments.whole("levels");
     options.drift = arguments.whole("drift");
     options.draft = arguments.has("draft");
-    options.carried = carriedValues(arguments);
+    options.carried = attributeValues(arguments);
     options.method = methodOf(arguments);
     options.indexCache = indexFolder(arguments);
     options.longestRun = arguments.real("longest-run");
@@ -74,7 +74,7 @@ LevelSet holeOf(Run& run, const LevelSet& partial, const ModelOptions& like) {
     return run.load(text, options);
 }
 
-// synth [EXEMPLAR] --keep PARTIAL --hole MODEL: more geometry where some is missing.
+// synth [EXEMPLAR] --keep PARTIAL --hole MODEL: fills missing geometry.
 void fill(Run& run) {
     const Arguments& arguments = run.arguments;
     run.requireInputs(0, 1);
@@ -84,7 +84,7 @@ void fill(Run& run) {
           "rotation-map", "scale-map", "half-width", "index-cache"})
         if (arguments.has(option))
             throw Error(ErrorCode::InvalidOption,
-                        std::string("--") + option + ": has no meaning with --keep, which fills holes");
+                        std::string("--") + option + ": cannot be combined with --keep, which fills holes");
     if (!arguments.has("hole"))
         throw Error(ErrorCode::InvalidOption,
                     "--hole: missing; give a model whose inside is to be filled, a box i,j,k,I,J,K, or auto");
@@ -101,7 +101,7 @@ void fill(Run& run) {
     modelOptions.keepSource = arguments.text("hole") == "auto";
     modelOptions.carry = true;
     const LevelSet partial = run.load(partialPath, modelOptions);
-    // All else is made in the voxels of what is kept.
+    // The other models are loaded at the kept model's voxel size.
     modelOptions.voxelSize = voxelSizeOf(*partial.grid);
     modelOptions.resolution = 0;
     modelOptions.keepSource = false;
@@ -124,15 +124,13 @@ void fill(Run& run) {
     run.finish();
 }
 
-// What needs no file.
+// Checks that need no file.
 void requireControls(const Arguments& arguments) {
     if (arguments.has("exemplar-map") && arguments.inputs.size() < 2)
-        throw Error(ErrorCode::InvalidOption,
-                    "--exemplar-map: says which of several exemplars goes where; give at least two");
+        throw Error(ErrorCode::InvalidOption, "--exemplar-map: chooses between exemplars; give at least two");
     if (arguments.has("guide") != arguments.has("exemplar-guide"))
-        throw Error(
-            ErrorCode::InvalidOption,
-            "--guide and --exemplar-guide: belong together, the same scalar over result and exemplar");
+        throw Error(ErrorCode::InvalidOption,
+                    "--guide and --exemplar-guide: give both, the same scalar over result and exemplar");
     if (!arguments.has("guide")) return;
     const std::size_t guides = arguments.all("exemplar-guide").size();
     if (guides != arguments.inputs.size())
@@ -140,7 +138,7 @@ void requireControls(const Arguments& arguments) {
                                                   " times; give it once for each exemplar, in their order");
 }
 
-// The first one's voxel size holds for all.
+// All exemplars are loaded at the first one's voxel size.
 std::vector<LevelSet> loadExemplars(Run& run, ModelOptions options) {
     std::vector<LevelSet> exemplars;
     for (const std::string& path : run.arguments.inputs) {
@@ -157,7 +155,7 @@ std::vector<const LevelSet*> pointersTo(const std::vector<LevelSet>& models) {
     return pointers;
 }
 
-// Grids as they are; of --exemplar-map also any model.
+// Controls are grids; --exemplar-map may also be any model.
 void loadControls(Run& run, double voxelSize, SynthOptions& options) {
     const Arguments& arguments = run.arguments;
     const std::string map = arguments.text("exemplar-map");
@@ -193,7 +191,7 @@ void synth(Run& run) {
     modelOptions.halfWidth = 3;
     modelOptions.carry = true;
     std::vector<LevelSet> exemplars = loadExemplars(run, modelOptions);
-    keepCarried(run.arguments, exemplars);
+    keepNamedAttributes(run.arguments, exemplars);
     if (run.arguments.has("exemplar-mask")) options.exemplarMask = run.loadGrid("exemplar-mask");
     loadControls(run, voxelSizeOf(*exemplars.front().grid), options);
     const SynthResult result = synthesize(pointersTo(exemplars), options, run.context);
@@ -216,6 +214,7 @@ void synth(Run& run) {
 const Command kSynth{
     "synth",
     "synth EXEMPLAR... -o OUT --size X,Y,Z [options] | synth [EXEMPLAR] --keep PARTIAL --hole MODEL -o OUT",
-    "Make more geometry like an exemplar's", "vdb_synth synth grid.vdb -o more.vdb --size 2x,2x,1x", synth};
+    "Synthesize more geometry that looks like an exemplar",
+    "vdb_synth synth grid.vdb -o more.vdb --size 2x,2x,1x", synth};
 
 }  // namespace vdbsynth::cli

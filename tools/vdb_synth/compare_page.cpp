@@ -1,5 +1,5 @@
-// A comparison as one page: pictures, verdicts, curves. Everything is in the page; its script only says what
-// a curve's value is where the pointer is.
+// A comparison as one page: pictures, verdicts, curves. The page is self-contained; its script only shows a
+// curve's value under the pointer.
 #include "tools/vdb_synth/compare_report.h"
 
 #include "libvdbsynth/base/number_text.h"
@@ -101,7 +101,7 @@ struct NamedCurve {
     std::vector<double> values;
 };
 
-// All models' curves of one statistic, r = 0 .. n - 1 to the right.
+// The curves of all models for one statistic; r = 0 .. n - 1 from left to right.
 std::string chart(const std::string& title, const std::vector<NamedCurve>& curves) {
     double low = 0, high = 0;
     std::size_t n = 2;
@@ -134,7 +134,7 @@ std::string chart(const std::string& title, const std::vector<NamedCurve>& curve
            "</svg><figcaption>" + escaped(title) + "<output></output></figcaption></figure>\n";
 }
 
-// Curves of several axes are one after another.
+// A statistic with one curve per axis holds them one after another.
 std::string charts(const Comparison& comparison, std::size_t s) {
     const Statistic& first = comparison.reference.statistics[s];
     const std::size_t length = std::size_t(comparison.reach) + 1;
@@ -143,7 +143,7 @@ std::string charts(const Comparison& comparison, std::size_t s) {
         std::vector<NamedCurve> curves;
         const auto add = [&](const ModelStatistics& model) {
             const std::vector<double>& values = model.statistics.at(s).values;
-            curves.push_back({model.name, {}});  // stays empty, in its colour's place, where not measured
+            curves.push_back({model.name, {}});  // empty if not measured; keeps the model's colour
             if (values.size() < (part + 1) * length) return;
             const auto begin = values.begin() + std::ptrdiff_t(part * length);
             curves.back().values.assign(begin, begin + std::ptrdiff_t(length));
@@ -202,14 +202,14 @@ std::string statisticsTable(const Comparison& comparison, std::size_t i) {
 
 std::string countsTable(const Comparison& comparison, std::size_t i) {
     const ModelStatistics &a = comparison.reference, &b = comparison.others[i];
-    std::string html = "<table>" + cells({"counted once", escaped(a.name), escaped(b.name)}, "th");
+    std::string html = "<table>" + cells({"counts", escaped(a.name), escaped(b.name)}, "th");
     const auto row = [&](const std::string& name, double of, double other) {
         html += cells({escaped(name), shortNumber(of), shortNumber(other)});
     };
-    row("parts of the solid", double(a.topology.solid.sizes.size()), double(b.topology.solid.sizes.size()));
-    row("parts of the void", double(a.topology.empty.sizes.size()), double(b.topology.empty.sizes.size()));
-    row("crumbs, parts under " + std::to_string(comparison.crumbLimit) + " voxels", double(a.crumbs),
-        double(b.crumbs));
+    row("solid components", double(a.topology.solid.sizes.size()), double(b.topology.solid.sizes.size()));
+    row("void components", double(a.topology.empty.sizes.size()), double(b.topology.empty.sizes.size()));
+    row("islands, components under " + std::to_string(comparison.islandLimit) + " voxels", double(a.islands),
+        double(b.islands));
     row("Euler characteristic", a.topology.eulerCharacteristic, b.topology.eulerCharacteristic);
     row("| |grad| - 1 |, mean", a.gradient.mean, b.gradient.mean);
     row("| |grad| - 1 |, 99th percentile", a.gradient.percentile99, b.gradient.percentile99);

@@ -21,7 +21,7 @@ std::string column(const std::string& text, std::size_t width) {
 
 constexpr std::size_t kName = 38, kNumber = 13;
 
-// What a person reads of a statistic: a number, three by axis, or that it is a curve.
+// A statistic as a person reads it: a number, three for a statistic by axis, or the word curve.
 std::string valueText(const Statistic& statistic, double voxel) {
     if (!statistic.measured()) return "-";
     if (statistic.curve) return "curve";
@@ -68,23 +68,23 @@ void appendCounts(const Comparison& comparison, std::size_t i, std::string& text
     const auto row = [&](const std::string& name, double of, double other) {
         text += column(name, kName) + column(shortNumber(of), 2 * kNumber) + shortNumber(other) + "\n";
     };
-    text += "\ncounted once\n";
-    row("parts of the solid", double(a.topology.solid.sizes.size()), double(b.topology.solid.sizes.size()));
+    text += "\ncounts\n";
+    row("solid components", double(a.topology.solid.sizes.size()), double(b.topology.solid.sizes.size()));
     const auto largest = [](const Components& c) { return c.sizes.empty() ? 0.0 : double(c.sizes.front()); };
-    row("largest part (voxels)", largest(a.topology.solid), largest(b.topology.solid));
-    row("parts of the void", double(a.topology.empty.sizes.size()), double(b.topology.empty.sizes.size()));
-    row("enclosed parts of the void", a.topology.enclosed, b.topology.enclosed);
+    row("largest component (voxels)", largest(a.topology.solid), largest(b.topology.solid));
+    row("void components", double(a.topology.empty.sizes.size()), double(b.topology.empty.sizes.size()));
+    row("enclosed void components", a.topology.enclosed, b.topology.enclosed);
     row("Euler characteristic", a.topology.eulerCharacteristic, b.topology.eulerCharacteristic);
     if (!a.domainRecorded && !b.domainRecorded) row("tunnels", a.topology.tunnels, b.topology.tunnels);
-    row("crumbs (parts under " + std::to_string(comparison.crumbLimit) + " voxels)", double(a.crumbs),
-        double(b.crumbs));
+    row("islands (components under " + std::to_string(comparison.islandLimit) + " voxels)", double(a.islands),
+        double(b.islands));
     row("| |grad| - 1 |, mean", a.gradient.mean, b.gradient.mean);
     row("| |grad| - 1 |, 99th percentile", a.gradient.percentile99, b.gradient.percentile99);
     row("band completeness", a.bandCompleteness, b.bandCompleteness);
     for (const ModelStatistics* model : {&a, &b})
         if (model->thicknessCoarsening > 1)
-            text += model->name + ": thickness was measured on every " +
-                    std::to_string(model->thicknessCoarsening) + ". voxel\n";
+            text += model->name + ": thickness was measured at a spacing of " +
+                    std::to_string(model->thicknessCoarsening) + " voxels\n";
 }
 
 void appendDistances(const Comparison& comparison, std::size_t i, std::string& text) {
@@ -181,7 +181,7 @@ Json modelJson(const ModelStatistics& model) {
                 {"enclosed_voids", model.topology.enclosed},
                 {"euler_characteristic", model.topology.eulerCharacteristic},
                 {"tunnels", model.domainRecorded ? Json(nullptr) : Json(model.topology.tunnels)},
-                {"crumbs", model.crumbs},
+                {"crumbs", model.islands},
                 {"gradient_error_mean", model.gradient.mean},
                 {"gradient_error_p99", model.gradient.percentile99},
                 {"band_completeness", model.bandCompleteness},
@@ -264,14 +264,15 @@ bool allPass(const ModelDistances& distances) {
 std::string sourceText(const ModelDistances& distances) {
     const std::string share = shortNumber(100 * distances.verified) + " %";
     const std::string failed =
-        distances.verified > 0 ? "the map holds for " + share + " of the voxels only and is ignored; " : "";
+        distances.verified > 0 ? "the map is correct for only " + share + " of the voxels and is ignored; "
+                               : "";
     switch (distances.sourceKind) {
         case SourceKind::Map:
-            return "by the source map, which holds for " + share + " of the voxels";
+            return "by the source map, correct for " + share + " of the voxels";
         case SourceKind::Matching:
-            return failed + "copies looked for in a box of " + sizeText(distances.looked) + " voxels";
+            return failed + "copies searched in a box of " + sizeText(distances.looked) + " voxels";
         default:
-            return failed + "no surface to look at";
+            return failed + "no surface to search";
     }
 }
 
@@ -317,7 +318,7 @@ nlohmann::ordered_json comparisonJson(const Comparison& comparison) {
                 {"others", others},
                 {"stationary", axesText(comparison.stationary)},
                 {"sub_volumes", comparison.parts},
-                {"crumb_limit_voxels", comparison.crumbLimit},
+                {"crumb_limit_voxels", comparison.islandLimit},
                 {"curve_reach_voxels", comparison.reach},
                 {"yardstick", yardsticks}};
 }

@@ -1,6 +1,6 @@
 // --config: options from a file or from the report of an earlier run.
 #include "libvdbsynth/base/error.h"
-#include "libvdbsynth/io/whole_file.h"
+#include "libvdbsynth/io/readers/whole_file.h"
 #include "tools/vdb_synth/option_set.h"
 #include "tools/vdb_synth/options.h"
 

@@ -3,8 +3,8 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/point_file.h"
-#include "libvdbsynth/io/text_scanner.h"
-#include "libvdbsynth/io/whole_file.h"
+#include "libvdbsynth/io/readers/text_scanner.h"
+#include "libvdbsynth/io/readers/whole_file.h"
 
 #include <nlohmann/json.hpp>
 
@@ -54,7 +54,7 @@ std::vector<Stroke> strokesOfJson(const std::string& path) {
 std::vector<Stroke> strokesOfPoints(const std::string& path, const RunContext& ctx) {
     const PointCloud cloud = readPoints(path, ctx).cloud;
     if (cloud.normals.empty())
-        throw Error(ErrorCode::BadData, path + ": its points have no normals to take for directions");
+        throw Error(ErrorCode::BadData, path + ": its points have no normals, which give the directions");
     std::vector<Stroke> strokes;
     for (std::size_t i = 0; i < cloud.points.size(); ++i)
         strokes.push_back({cast<double>(cloud.points[i]), cast<double>(cloud.normals[i])});
@@ -81,7 +81,7 @@ DirectionSource directionOf(Run& run, const std::string& name) {
     run.noteInput(text);
     for (const Stroke& stroke : source.strokes)
         if (!std::isfinite(dot(stroke.position, stroke.position)) || !(length(stroke.direction) > 0))
-            throw Error(ErrorCode::BadData, text + ": a stroke without a place or a direction");
+            throw Error(ErrorCode::BadData, text + ": a stroke without a position or a direction");
     if (source.strokes.empty()) throw Error(ErrorCode::BadData, text + ": holds no strokes");
     return source;
 }

@@ -1,14 +1,14 @@
 #pragma once
-#include "libvdbsynth/pipeline/analogy.h"
+#include "libvdbsynth/pipeline/analogy/analogy.h"
 #include "tools/vdb_synth/command.h"
 
 #include <string>
 
 namespace vdbsynth::cli {
 
-/// What --NAME says: a word, a .vdb grid, or a file of strokes. Automatic if it is not given.
-/// Strokes are .csv, .txt or .xyz rows `x y z dx dy dz` (commas or spaces), .json [{"position": [x,y,z],
-/// "direction": [dx,dy,dz]}, ...], or .ply points whose normals are the directions; world.
+/// The value of --NAME: a word, a .vdb grid, or a file of strokes; Automatic if it is not given. Strokes
+/// (world) are rows `x y z dx dy dz` in .csv, .txt or .xyz (commas or spaces), .json [{"position": [x,y,z],
+/// "direction": [dx,dy,dz]}, ...], or .ply points whose normals are the directions.
 /// @throw Error Io, BadData (with the line)
 DirectionSource directionOf(Run& run, const std::string& name);
 

@@ -28,7 +28,7 @@ const char* headingOf(Group group) {
     return "";
 }
 
-// Words in lines of at most kWidth columns, the first of which begins at kColumn, as all others do.
+// Breaks lines at kWidth columns; each begins at kColumn.
 std::string wrapped(const std::string& text) {
     std::string lines;
     std::size_t column = kColumn;

@@ -11,7 +11,7 @@ std::string indexFolder(const Arguments& arguments) {
     const std::string folder = arguments.text("index-cache");
     std::error_code ignored;
     if (!std::filesystem::is_directory(folder, ignored))
-        throw Error(ErrorCode::Io, "--index-cache " + folder + ": no such folder; make it first");
+        throw Error(ErrorCode::Io, "--index-cache " + folder + ": no such folder; create it first");
     return folder;
 }
 

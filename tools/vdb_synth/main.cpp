@@ -25,8 +25,8 @@ std::string overview() {
         text += "  " + name + command->summary + "\n";
     }
     return text +
-           "\nvdb_synth COMMAND --help tells more. Exit codes: 0 done, 1 unusable input, 2 bad option, 3 bad "
-           "file, 130 and 143 stopped.\n";
+           "\nvdb_synth COMMAND --help lists its options. Exit codes: 0 done, 1 unusable input, 2 bad "
+           "option, 3 bad file, 130 and 143 stopped.\n";
 }
 
 int fail(const Error& error, const std::string& command) {
@@ -38,7 +38,8 @@ int fail(const Error& error, const std::string& command) {
     return exitCode(error.code());
 }
 
-// Past this the system refuses memory, which becomes an error, instead of ending the process later.
+// Beyond this limit the system refuses memory, which becomes an error; without it the process would be
+// killed.
 void limitMemory(std::uint64_t bytes) {
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
     const rlimit limit{rlim_t(bytes + 512000000), rlim_t(bytes + 512000000)};
@@ -48,7 +49,7 @@ void limitMemory(std::uint64_t bytes) {
 #endif
 }
 
-// True if all that was printed arrived. More than a buffer is written, and fails, before the flush.
+// True if all output was written. Output that exceeds the buffer fails before the flush.
 bool arrived() {
     return std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
 }
@@ -65,7 +66,7 @@ int execute(const Command& command, const Arguments& arguments, const Supervisor
         try {
             command.run(run);
         } catch (const Error& error) {
-            // Errors speak of outputs, not of their temporary names.
+            // Errors name outputs, not their temporary files.
             throw Error(error.code(), run.withoutTemporaries(error.what()));
         }
         if (!arrived()) throw Error(ErrorCode::Io, "standard output cannot be written");
@@ -137,7 +138,7 @@ int dispatch(char** argv, const std::string& name, const std::vector<std::string
 
 int main(int argc, char** argv) {
     using namespace vdbsynth;
-    // With a standard stream closed, the next file opened would take its place.
+    // If a standard stream is closed, the next file opened would take its number.
     for (int file = ::open("/dev/null", O_RDWR); file >= 0 && file <= 2;) file = ::open("/dev/null", O_RDWR);
     const std::vector<std::string> words(argv + std::min(argc, 2), argv + argc);
     const std::string first = argc > 1 ? argv[1] : "";

@@ -16,7 +16,7 @@ bool anyVdb(const std::vector<std::string>& paths) {
 
 namespace {
 
-// The word behind --source-map may be meant as an input: a model is not replaced by a map unasked.
+// The word after --source-map may be meant as an input: a model is replaced by a map only with --force.
 void requireNoModel(const Arguments& arguments, const std::string& path) {
     std::error_code ignored;
     if (arguments.has("force") || !std::filesystem::is_regular_file(path, ignored)) return;
@@ -24,15 +24,14 @@ void requireNoModel(const Arguments& arguments, const std::string& path) {
     try {
         grids = readVdbGrids(path);
     } catch (const Error&) {
-        return;  // nothing that could be lost as a model
+        return;  // not a model: nothing to lose
     }
     if (grids.empty() || std::any_of(grids.begin(), grids.end(),
                                      [](const GridPtr& grid) { return isOfSourceMap(nameOf(*grid)); }))
         return;
-    throw Error(ErrorCode::InvalidOption,
-                "--source-map " + path +
-                    ": would replace a file that is no source map; give another name, put a --source-map "
-                    "without FILE last, or give --force");
+    throw Error(ErrorCode::InvalidOption, "--source-map " + path +
+                                              ": would replace a file that is not a source map; give another "
+                                              "name, put a --source-map without FILE last, or give --force");
 }
 
 }  // namespace
@@ -45,8 +44,7 @@ MapPlace mapPlaceOf(const Arguments& arguments, const std::vector<std::string>& 
     if (place.path.empty()) return place;
     if (place.inside && !anyVdb(outputs))
         throw Error(ErrorCode::InvalidOption,
-                    "--source-map: without a file it goes into a .vdb output, and there is none; give "
-                    "--source-map FILE.vdb");
+                    "--source-map: without a file it needs a .vdb output; give --source-map FILE.vdb");
     if (!place.inside) requireNoModel(arguments, place.path);
     return place;
 }

@@ -1,6 +1,6 @@
 #pragma once
 #include "libvdbsynth/map/source_map.h"
-#include "libvdbsynth/pipeline/outputs.h"
+#include "libvdbsynth/pipeline/convert/outputs.h"
 #include "tools/vdb_synth/command.h"
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace vdbsynth::cli {
 
-/// --source-map: where the source map goes.
+/// Where --source-map writes the source map.
 struct MapPlace {
     std::string path;     ///< empty: nowhere
     bool inside = false;  ///< into the .vdb output
@@ -19,7 +19,7 @@ MapPlace mapPlaceOf(const Arguments& arguments, const std::vector<std::string>& 
 
 bool anyVdb(const std::vector<std::string>& paths);
 
-/// writeModel with the run's metadata, the map beside `surface` or in a file of its own, if any is asked for.
+/// writeModel with the run's metadata; the map, if asked for, goes next to `surface` or into its own file.
 void writeWithMap(Run& run, const LevelSet& model, const SourceMap& map, const MapPlace& place,
                   const std::vector<std::string>& paths, ModelOutputOptions outputs);
 

@@ -8,7 +8,7 @@
 namespace vdbsynth::cli {
 namespace {
 
-// Whole numbers in full, others as short as they are known.
+// Whole numbers in full, others with the fewest digits that read back exactly.
 std::string numberText(double value) {
     if (value == std::floor(value) && std::abs(value) < 1e15)
         return std::to_string(static_cast<long long>(value));
@@ -42,7 +42,7 @@ std::string listed(const std::vector<std::string>& words) {
 std::string listed(const std::vector<Choice>& choices, const std::string& initial, bool meanings) {
     std::vector<std::string> words;
     for (const Choice& choice : choices) {
-        // The choice that is called default needs no second word for it.
+        // A choice named default is not marked a second time.
         const bool marked = meanings && choice.word == initial && choice.word != "default";
         std::string note = meanings ? choice.meaning : "";
         if (marked) note = note.empty() ? "default" : "default: " + note;
@@ -138,8 +138,7 @@ std::string allowedText(const Option& option) {
             return "six whole numbers i,j,k,I,J,K, every minimum at most its maximum";
         case Kind::Sizes:
             return "three sizes with commas, each in voxels (1 to 1048576) or a multiple (from 1x), for "
-                   "example "
-                   "2x,2x,1x or 128,128,64";
+                   "example 2x,2x,1x or 128,128,64";
         case Kind::Pixels:
             return "WIDTHxHEIGHT, each from " + rangeText(option) + " (pixels)";
         case Kind::Slice:
@@ -150,8 +149,7 @@ std::string allowedText(const Option& option) {
             return "such as \"make balls\" or \"make balls --feature 12\", with a feature from 4 to 256";
         case Kind::Direction:
             return "axis:x|y|z or axis:-x, around:x|y|z, radial, curvature, a grid FILE.vdb[:GRID], or "
-                   "strokes in "
-                   "a .csv, .json or .ply file";
+                   "strokes in a .csv, .json or .ply file";
         case Kind::Hole:
             return "a model, a box i,j,k,I,J,K, or auto";
         case Kind::File:

@@ -5,7 +5,7 @@
 
 namespace vdbsynth::cli {
 
-/// What the value of an option is; option_value.h reads each kind.
+/// The kind of an option's value; option_value.h reads each kind.
 enum class Kind {
     Flag,         ///< no value
     Text,         ///< anything
@@ -28,11 +28,11 @@ enum class Kind {
     Direction,    ///< axis:x, around:y, radial, curvature, a grid, or a file of strokes
     Hole,         ///< auto, a box, or a model
     File,         ///< a file to read, of `extensions`
-    Model,        ///< a file to read, of any kind that is made a level set
+    Model,        ///< a file to read, of any kind that converts to a level set
     Grid,         ///< FILE.vdb or FILE.vdb:GRID, to read
     ModelOrGrid,  ///< either
     Folder,       ///< a folder to keep files in
-    Output        ///< a file to write, of `extensions`; none: what a model is written as; "*": any
+    Output        ///< a file to write, of `extensions`; none: any kind of model file; "*": any file
 };
 
 enum class Unit { None, Voxels, World, Pixels, Radians };
@@ -40,23 +40,23 @@ enum class Unit { None, Voxels, World, Pixels, Radians };
 /// Headings of --help, in this order.
 enum class Group { Result, Method, Controls, Output, Input, Raster, Running };
 
-/// A word that an option may be and, where the word does not say it, what it means.
+/// A word that an option accepts and, where the word does not explain itself, its meaning.
 struct Choice {
     std::string word, meaning;
 };
 
-/// Ends of ranges that are open: not said in help.
+/// Open ends of ranges, which help does not show.
 inline constexpr double kAboveZero = 1e-30, kUnbounded = 1e30;
-/// The farthest voxel from the origin that an option takes.
+/// The voxel farthest from the origin that an option accepts.
 inline constexpr double kFarVoxel = 99999999;
 
-/// One option, described once: from this come parsing, validation, help and metadata. The table is in
-/// options.h. The functions at the end fill a description in, so that the table reads as sentences.
+/// One option, described once: parsing, validation, help and metadata derive from it. The table is in
+/// options.h. The setters at the end return *this, so that each table entry reads as a sentence.
 struct Option {
     std::string name;      ///< without dashes
     std::string argument;  ///< what --help shows for its value; empty for a flag
     std::string help;      ///< what it does; unit, range, choices and default are added (helpLine)
-    std::string note;      ///< what else there is to know, said last
+    std::string note;      ///< a remark, printed last
     Kind kind = Kind::Flag;
     Group group = Group::Result;
     Unit unit = Unit::None;
@@ -64,20 +64,20 @@ struct Option {
     double low = -kUnbounded, high = kUnbounded;
     bool odd = false;
     std::vector<Choice> choices;
-    bool orExtension = false;  ///< of a Choice: also the extension of any kind of file that is read
+    bool orExtension = false;             ///< of a Choice: also the extension of any readable file
     std::vector<std::string> extensions;  ///< without dots
-    std::string initial;                  ///< the value where none is given; empty: none
-    std::string otherwise;  ///< what holds where none is given, in words, if that is no fixed value
-    std::vector<std::string> commands;  ///< that take it
-    bool repeats = false;               ///< may be given several times
-    bool incidental = false;            ///< changes how a run goes or where it writes, not what it makes
-    bool valueOptional = false;         ///< the next word is its value only if it has one of `extensions`
-    /// Fields of the library's option structs that it sets; errors of the library name those.
+    std::string initial;                  ///< the value if none is given; empty: none
+    std::string otherwise;                ///< the default in words, if it is no fixed value
+    std::vector<std::string> commands;    ///< that take it
+    bool repeats = false;                 ///< may be given several times
+    bool incidental = false;              ///< changes how a run proceeds or where it writes, not its result
+    bool valueOptional = false;           ///< the next word is its value only if it has one of `extensions`
+    /// Fields of the library's option structs that the option sets; the library's errors name these.
     std::vector<std::string> fields;
-    std::map<std::string, std::string> valueOf;  ///< the option's value that stands for a field being set
-    std::vector<std::string> oldNames;           ///< refused, with a hint at the present one
+    std::map<std::string, std::string> valueOf;  ///< the option's value that sets a field
+    std::vector<std::string> oldNames;           ///< refused, with a hint at the present name
 
-    /// What differs for one command: applied in optionsOf.
+    /// What differs for one command; applied in optionsOf.
     struct Change {
         std::string command;
         void (*apply)(Option&);
@@ -109,16 +109,16 @@ struct Option {
 /// "longest-run" as "longestRun".
 std::string camelCase(const std::string& name);
 
-/// True for a path that is read: a file of which nothing but the name may come into metadata.
+/// True for a path that is read; metadata holds only the file's name.
 bool readsPath(const Option& option);
 /// True for a path that is written, or a folder.
 bool writesPath(const Option& option);
 
 /// "4 to 256", "above 0", empty where there is none.
 std::string rangeText(const Option& option);
-/// What a value must be, after "must be": "a whole number from 4 to 256".
+/// What a value must be, to follow "must be": "a whole number from 4 to 256".
 std::string allowedText(const Option& option);
-/// The line of --help: what it does, unit, range or choices, default.
+/// The text of --help: what it does, unit, range or choices, default.
 std::string helpLine(const Option& option);
 
 }  // namespace vdbsynth::cli

@@ -7,7 +7,7 @@
 
 namespace vdbsynth::cli {
 
-// First words of a description in the table; its rest are Option's own functions.
+// Constructors of table entries; Option's setters complete them.
 
 inline Option option(Kind kind, const std::string& name, const std::string& argument) {
     Option made;
@@ -35,7 +35,7 @@ inline Option real(const std::string& name, const std::string& argument, double 
                    double high = kUnbounded) {
     return option(Kind::Real, name, argument).from(low, high);
 }
-/// A length above 0 in units of the world.
+/// A length above 0 in world units.
 inline Option worldLength(const std::string& name, const std::string& argument) {
     return real(name, argument, kAboveZero).measuredIn(Unit::World);
 }

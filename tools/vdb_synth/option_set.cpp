@@ -49,7 +49,7 @@ std::vector<std::string> bindOptionalValues(const std::vector<Option>& options,
     return bound;
 }
 
-// Boost takes "-.obj", the name of a stream, for an option: it goes by with another first letter.
+// Boost would take "-.obj", the name of a stream, for an option: it is passed with another first letter.
 constexpr char kStreamMark = '\x01';
 
 std::vector<std::string> hideStreams(std::vector<std::string> words) {
@@ -122,7 +122,7 @@ std::map<std::string, std::vector<std::string>> Arguments::normalised() const {
 }
 
 int Arguments::whole(const std::string& name) const {
-    // Not given and no default: 0, which the library's structs hold for it.
+    // Not given and no default: 0, which means the default in the library's structs.
     double value = 0;
     readReal(text(name), value);
     return int(value);

@@ -10,12 +10,12 @@
 
 namespace vdbsynth::cli {
 
-/// Value of an option whose value was left out.
+/// The value of an option that was given without one.
 inline const std::string kNoValue = "(none)";
 
-/// What was given to one command on the command line and in --config. Readers return what was given, else the
-/// option's default, else nothing of its type (0, "", {}); `has` tells. Ranges are the options' own:
-/// after `check` no reader fails.
+/// What was given to one command on the command line and in --config. Readers return the given value, else
+/// the option's default, else nothing of its type (0, "", {}); `has` distinguishes these. Ranges are the
+/// options' own: after `check` no reader fails.
 class Arguments {
 public:
     Arguments() = default;
@@ -24,11 +24,11 @@ public:
     std::vector<std::string> inputs;
     std::map<std::string, std::vector<std::string>> values;  ///< flags hold one "true"
 
-    /// Refuses every value that is not what its option allows, whether or not the command comes to read it.
-    /// No file is looked at. @throw Error InvalidOption that names the option, the value and what is allowed
+    /// Refuses every value that its option does not allow, whether or not the command reads it. Opens no
+    /// file. @throw Error InvalidOption that names the option, the value and what is allowed
     void check() const;
-    /// What makes the result, defaults included, each value in one form however it was typed; of paths the
-    /// names of files only. Options that are `incidental` are left out.
+    /// All options that affect the result, defaults included, each value in one normal form; of paths only
+    /// the names of files. `incidental` options are left out.
     std::map<std::string, std::vector<std::string>> normalised() const;
 
     const std::string& command() const { return mCommand; }
@@ -56,7 +56,7 @@ private:
 };
 
 /// Parses a command line (Boost.Program_options): `-o X`, `--option X`, `--option=X` and `-option X`. Values
-/// are not looked at, see Arguments::check.
+/// are checked later, by Arguments::check.
 /// @throw Error InvalidOption (unknownOption; a missing value; one given twice)
 Arguments parseArguments(const std::string& command, const std::vector<std::string>& words);
 
@@ -65,7 +65,7 @@ Arguments parseArguments(const std::string& command, const std::vector<std::stri
 void mergeConfig(Arguments& arguments);
 
 /// Refuses an output that is one of the files this run reads, by any path, unless --force is given.
-/// @param inputsAreOutputs  the inputs are the names of what is written, as those of `make`
+/// @param inputsAreOutputs  the inputs are the names of the files to write, as for `make`
 /// @throw Error InvalidOption that names both
 void refuseOverwriting(const Arguments& arguments, bool inputsAreOutputs);
 

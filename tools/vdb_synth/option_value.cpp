@@ -3,9 +3,9 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/path.h"
-#include "libvdbsynth/pipeline/analogy.h"
-#include "libvdbsynth/pipeline/model.h"
-#include "libvdbsynth/pipeline/outputs.h"
+#include "libvdbsynth/pipeline/analogy/analogy.h"
+#include "libvdbsynth/pipeline/convert/model.h"
+#include "libvdbsynth/pipeline/convert/outputs.h"
 
 #include <algorithm>
 #include <charconv>
@@ -33,7 +33,7 @@ std::string joined(const std::vector<std::string>& parts) {
     return text;
 }
 
-// A path as metadata has it: moving a file must not change a result's bytes.
+// A path as metadata holds it: moving a file must not change a result's bytes.
 std::string fileOnly(const std::string& text) {
     const GridPath path = splitGridPath(text);
     return fileNameOf(path.file) + (path.grid.empty() ? "" : ":" + path.grid);
@@ -141,7 +141,7 @@ std::string normalWords(const Option& option, const std::string& given) {
     ExemplarOptions process;
     switch (option.kind) {
         case Kind::Choice:
-            // An extension says how to read standard input, which makes no other result.
+            // An extension is the kind of standard input and does not change the result.
             if (option.orExtension && !isChoice(option, given) && isKnownExtension(given))
                 return option.initial;
             if (!isChoice(option, given)) refuseValue(option, given);
@@ -167,7 +167,7 @@ std::string normalWords(const Option& option, const std::string& given) {
 }
 
 std::string normalOutput(const Option& option, const std::string& given) {
-    // "-" names no kind of file; streams say what is missing.
+    // "-" has no extension; the class Streams reports that.
     if (given == "-") return given;
     if (option.extensions.empty()) {
         requireOutputPaths({given});

@@ -12,13 +12,13 @@
 
 namespace vdbsynth::cli {
 
-/// A length of a Kind::Sizes: in voxels, or as a multiple.
+/// A length of a Kind::Sizes: in voxels, or as a multiple of the exemplar's domain.
 struct SizeValue {
     double value = 0;
     bool multiple = false;
 };
 
-/// A Kind::Slice: an axis and where along it.
+/// A Kind::Slice: an axis and a position along it.
 struct SliceValue {
     int axis = 2;
     double fraction = 0.5;
@@ -29,8 +29,8 @@ struct GridPath {
     std::string file, grid;
 };
 
-// Readers of values, by their kind. Each reads the whole text and returns false where it is none; ranges are
-// the option's, see checkValue. No locale matters.
+// Readers of values, by their kind. Each reads the whole text and returns false if it does not parse. Ranges
+// are checked by normalValue. The locale does not matter.
 bool readWhole(const std::string& text, long long& value);
 bool readReal(const std::string& text, double& value);
 bool readSeed(const std::string& text, std::uint64_t& value);
@@ -58,13 +58,13 @@ std::vector<std::string> splitAtCommas(const std::string& text);
 /// @throw Error InvalidOption "--NAME VALUE: must be RANGE"
 [[noreturn]] void refuseValue(const Option& option, const std::string& given);
 
-/// Refuses what is not of the option's kind or out of its range; looks at no file.
-/// @return the value in the one form that metadata holds: however it was typed the same, and of paths that
-/// are read the names of files only
+/// Refuses a value that is not of the option's kind or out of its range; opens no file.
+/// @return the value in the one normal form that metadata holds, however it was typed; of paths that are read
+/// only the names of files
 /// @throw Error InvalidOption that names the option, the value and what is allowed
 std::string normalValue(const Option& option, const std::string& given);
 
-/// The file that a value names, where it names one that is read or written; else empty.
+/// The file that a value names, if the option reads or writes one; else empty.
 std::string pathIn(const Option& option, const std::string& value);
 
 }  // namespace vdbsynth::cli

@@ -58,7 +58,7 @@ bool isName(const std::string& text) {
            });
 }
 
-// The last name of `options.heights.pixelSize` and of `SynthOptions::size`.
+// The last part of `options.heights.pixelSize` and of `SynthOptions::size`.
 std::string lastName(const std::string& field) {
     return field.substr(field.find_last_of(".:") + 1);
 }

@@ -1,4 +1,4 @@
-// Options of single commands: what is made, how, and what steers it.
+// Options of single commands: result, method and controls.
 #include "tools/vdb_synth/option_makers.h"
 #include "tools/vdb_synth/options.h"
 
@@ -14,7 +14,7 @@ std::vector<Option> resultTable() {
             .from(8, 4096)
             .measuredIn(Unit::Voxels)
             .says("size of the domain, each side")
-            .otherwiseIs("a cube of --resolution, flat kinds less high")
+            .otherwiseIs("a cube of --resolution, lower for flat kinds")
             .takenBy({"make"}),
         option(Kind::Pixels, "size", "WxH")
             .from(16, 8192)
@@ -31,7 +31,7 @@ std::vector<Option> resultTable() {
             .takenBy({"make"}),
         axisChoices("border", "KIND",
                     {{"cut", ""}, {"object", ""}, {"tile", "the result repeats without a seam"}})
-            .says("how a growing axis ends")
+            .says("how the result ends along an axis that grows")
             .otherwiseIs("cut where a domain is recorded, else object")
             .takenBy({"synth"}),
         option(Kind::Box, "box", "BOX")
@@ -89,13 +89,13 @@ std::vector<Option> synthTable() {
             .takenBy({"synth"}),
         whole("drift", "D", 0, 1 << 20)
             .measuredIn(Unit::Voxels)
-            .says("how far sources may be from their own place along axes at 1x")
+            .says("how far a source may be from its destination along axes at 1x")
             .initially("0")
             .takenBy({"synth"}),
         real("longest-run", "S", 0.01, 1)
             .says("largest share of the exemplar to copy in one piece")
             .initially("0.3")
-            .noting("less gives newer results with more seams")
+            .noting("smaller values copy less and give more seams")
             .takenBy({"synth"}),
         option(Kind::Folder, "index-cache", "FOLDER")
             .says("keep the search index of an exemplar in this folder and read it from there the next time")
@@ -114,11 +114,9 @@ std::vector<Option> controlTable() {
             .says("copy only from where this grid is active; its box is the domain (of the first exemplar)")
             .takenBy({"synth"}),
         option(Kind::ModelOrGrid, "exemplar-map", "FILE")
-            .says("which exemplar goes where in the result: a .vdb with a grid of labels (0 is the first "
-                  "exemplar), or a "
-                  "model, inside which the second is used, outside it the first")
+            .says("which exemplar to use where in the result: a .vdb grid of labels (0: the first exemplar), "
+                  "or a model (inside: the second, outside: the first)")
             .was("which")
-            .sets({"which", "exemplarMap"})
             .takenBy({"synth"}),
         grid("guide")
             .says(
@@ -130,28 +128,26 @@ std::vector<Option> controlTable() {
             .repeatable()
             .takenBy({"synth"}),
         real("guide-weight", "W", 0.001, 1000)
-            .says("weight of a guide's difference beside the shape's")
+            .says("weight of guide differences relative to shape differences")
             .initially("4")
             .takenBy({"synth"}),
         grid("rotation-map")
             .measuredIn(Unit::Radians)
-            .says(
-                "grid over the result: how far to rotate what is copied, rotation vectors or angles about z")
+            .says("grid over the result: rotation of the copied geometry, rotation vectors or angles about z")
             .sets({"rotation", "rotationMap"})
             .takenBy({"synth"}),
         grid("scale-map")
-            .says("grid over the result: scale of what is copied, 0.25 to 4")
+            .says("grid over the result: scale of the copied geometry, 0.25 to 4")
             .sets({"scale", "scaleMap"})
             .takenBy({"synth"}),
         option(Kind::Model, "keep", "PARTIAL")
             .says("fill the holes of this model instead of making a larger one")
-            .noting("without EXEMPLAR from the model itself")
+            .noting("without EXEMPLAR the model is its own exemplar")
             .sets({"partial", "keep"})
             .takenBy({"synth"}),
-        option(Kind::Hole, "hole", "MODEL")
+        option(Kind::Hole, "hole", "MODEL|BOX|auto")
             .says("what to fill with --keep: the inside of a model, a box i,j,k,I,J,K of the kept model's "
-                  "voxels, or auto: "
-                  "a ball around each loop of open edges")
+                  "voxels, or auto: 3 voxels around the surface that closed its open edges")
             .takenBy({"synth"}),
     };
 }
@@ -161,15 +157,14 @@ std::vector<Option> analogyTable() {
         option(Kind::Direction, "direction", "SPEC")
             .in(Group::Controls)
             .says("direction of the texture over B: axis:x, axis:-z, around:y, radial, curvature, a grid of "
-                  "vectors or "
-                  "scalars FILE.vdb[:GRID], or strokes (world): .csv rows x,y,z,dx,dy,dz, .json, .ply points "
-                  "with normals")
+                  "vectors or scalars FILE.vdb[:GRID], or strokes (world): .csv rows x,y,z,dx,dy,dz, .json, "
+                  ".ply points with normals")
             .otherwiseIs("curvature")
             .takenBy({"analogy"}),
         option(Kind::Direction, "exemplar-direction", "SPEC")
             .in(Group::Controls)
             .says("direction of the texture over A, given in the same ways")
-            .otherwiseIs("what make wrote into A, else curvature")
+            .otherwiseIs("the grid direction that make wrote into A, else curvature")
             .takenBy({"analogy"}),
         option(Kind::ModelOrGrid, "mask", "FILE")
             .in(Group::Controls)
@@ -188,7 +183,7 @@ std::vector<Option> analogyTable() {
             .takenBy({"analogy"}),
         whole("levels", "N", 1, 6)
             .says("levels of the pyramid")
-            .otherwiseIs("as many as still hold the texture, at most 3")
+            .otherwiseIs("as many as still resolve the texture, at most 3")
             .takenBy({"analogy"}),
         whole("sweeps", "N", 1, 10).says("sweeps over every level").initially("2").takenBy({"analogy"}),
         odd("samples", "N", 3, 9)
@@ -210,20 +205,19 @@ std::vector<Option> analogyTable() {
             .initially("0.5")
             .takenBy({"analogy"}),
         flag("exact")
-            .says("search the nearest match exactly, among reduced features (slower)")
+            .says("search the exact nearest match of the reduced features (slower)")
             .sets({"epsilon", "exact"})
             .takenBy({"analogy"}),
         flag("causal")
-            .says("compare only what lies behind a voxel in the sweep, as in the paper")
+            .says("compare only voxels that the sweep has visited, as in the paper")
             .takenBy({"analogy"}),
         flag("straight")
             .says("straight cubes as neighbourhoods, as in the paper, instead of curvature-adapted ones")
             .sets({"curvatureAdapted", "straight"})
             .takenBy({"analogy"}),
         flag("naive")
-            .says("neighbourhoods along the grid's axes, as the paper's first variant, for filters such as "
-                  "blur; "
-                  "grids of numbers (fog volumes, scalars) stay numbers")
+            .says("axis-aligned neighbourhoods, the paper's first variant, for filters such as blur; scalar "
+                  "grids (fog volumes) are filtered as scalars")
             .sets({"aligned", "naive"})
             .takenBy({"analogy"}),
     };
@@ -252,12 +246,12 @@ std::vector<Option> matchTable() {
             .takenBy({"match"}),
         option(Kind::Axes, "stationary", "AXES")
             .says("axes along which the reference is stationary: xyz, xy ... or none")
-            .otherwiseIs("those whose two faces both cut the solid")
+            .otherwiseIs(
+                "those whose two faces cut about the same area of the solid, where a domain is recorded")
             .takenBy({"compare"}),
         option(Kind::Process, "process", "\"make KIND\"")
             .says("process that the reference is a sample of, such as \"make balls --feature 12\": compare "
-                  "with fresh "
-                  "samples of it")
+                  "with fresh samples of it")
             .takenBy({"compare"}),
         whole("fresh", "N", 2, 100)
             .says("number of fresh samples")

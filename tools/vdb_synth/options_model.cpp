@@ -7,7 +7,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-// Commands that take any geometry and make it a level set.
+// Commands that take any geometry and convert it to a level set.
 const Names kModel{"convert", "crop", "mask", "match", "synth", "analogy", "repeat", "compare", "render"};
 
 std::vector<Option> inputTable() {
@@ -26,9 +26,9 @@ std::vector<Option> inputTable() {
             .butFor("analogy", [](Option& o) { o.says("side of a voxel of B"); })
             .butFor("repeat",
                     [](Option& o) {
-                        o.says("side of a voxel of the exemplars, of a map of synth")
+                        o.says("side of a voxel of the exemplars, for a map of synth")
                             .otherwiseIs("a VDB's own, else the map's")
-                            .noting("other maps ask for their own");
+                            .noting("other maps fix their own voxel sizes");
                     }),
         whole("resolution", "N", 2, 100000)
             .in(Group::Input)
@@ -40,7 +40,7 @@ std::vector<Option> inputTable() {
             .butFor("analogy", [](Option& o) { o.says("voxels along the longest side of B"); })
             .butFor("repeat",
                     [](Option& o) {
-                        o.says("voxels along the longest side of the exemplars, of a map of synth")
+                        o.says("voxels along the longest side of the exemplars, for a map of synth")
                             .otherwiseIs("a VDB's own voxels, else the map's");
                     }),
         whole("exemplar-resolution", "N", 2, 100000)
@@ -60,7 +60,7 @@ std::vector<Option> inputTable() {
             .in(Group::Input)
             .says("a fog volume is solid above this value")
             .takenBy(with(kModel, {"info"})),
-        choice("open", "KIND", {{"close", ""}, {"shell", "of --thickness about its faces or points"}})
+        choice("open", "KIND", {{"close", ""}, {"shell", "of --thickness around its faces or points"}})
             .in(Group::Input)
             .says("how to treat input that is not watertight")
             .initially("close")
@@ -96,7 +96,7 @@ std::vector<Option> rasterTable() {
             .takenBy(kModel),
         worldLength("base", "B")
             .in(Group::Raster)
-            .says("thickness of the solid under an image's lowest place")
+            .says("thickness of the solid under an image's lowest point")
             .otherwiseIs("a 20th of its longer side")
             .takenBy(kModel),
         choice("plane", "PLANE", {{"xy", ""}, {"yz", ""}, {"zx", ""}})
@@ -152,7 +152,7 @@ std::vector<Option> outputTable() {
                 {"points", ""},
                 {"levelset", ""},
                 {"heightfield", ""},
-                {"volume", "what an image is read as"}})
+                {"volume", "read an image as a volume"}})
             .in(Group::Output)
             .orAnExtension()
             .says("what to write")
@@ -170,7 +170,8 @@ std::vector<Option> outputTable() {
             .takenBy({"convert", "synth", "analogy", "repeat"}),
         flag("sharp")
             .in(Group::Output)
-            .says("keep edges and corners in a mesh output, by the input's faces where it is a mesh")
+            .says(
+                "keep sharp edges and corners in a mesh output, taken from the input's faces if it is a mesh")
             .takenBy({"convert"}),
         real("spacing", "S", 0.25, 100)
             .in(Group::Output)
@@ -193,13 +194,12 @@ std::vector<Option> outputTable() {
             .sets({"carried", "carryBlend"})
             .takenBy({"synth", "repeat"})
             .butFor("repeat", [](Option& o) { o.noting("only with a map of synth without --keep"); }),
-        map.says("also write the source map, what was copied from where")
+        map.says("also write the source map: where each voxel was copied from")
             .noting("without FILE into the .vdb output")
             .takenBy({"synth", "analogy"}),
         choice("map-types", "TYPES",
                {{"integer", ""},
-                {"float",
-                 "maps that readers without integer vectors, such as Debian's Python module, can open"}})
+                {"float", "for readers without integer vectors, such as Debian's Python module"}})
             .in(Group::Output)
             .says("types of the source map's grids")
             .initially("integer")

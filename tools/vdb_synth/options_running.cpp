@@ -1,4 +1,4 @@
-// Options of every command: how a run goes, not what it makes.
+// Options of every command: how a run proceeds, not what it makes.
 #include "tools/vdb_synth/option_makers.h"
 #include "tools/vdb_synth/options.h"
 
@@ -16,7 +16,7 @@ std::vector<Option> runningOptionTable() {
         whole("threads", "N", 0, 1024)
             .says("number of threads")
             .initially("0")
-            .noting("0 is one for each core; results do not depend on it")
+            .noting("0: one per core; results do not depend on it")
             .takenBy(every),
         option(Kind::Bytes, "max-memory", "BYTES")
             .says("most memory to use, such as 4G")
@@ -30,18 +30,18 @@ std::vector<Option> runningOptionTable() {
             .says("write options, times and peak memory by stage, and counts")
             .takenBy(every),
         file("config", "FILE.json", {})
-            .says("options from a file or an earlier report; the command line wins")
+            .says("options from a file or an earlier report; the command line takes precedence")
             .takenBy(every),
         flag("force")
             .says("allow an output that is also an input of this run; it is replaced at the end")
             .takenBy(every),
-        flag("no-supervisor").says("work in this process, for debuggers").takenBy(every),
+        flag("no-supervisor").says("run in this process, for debuggers").takenBy(every),
         flag("quiet").shortly('q').says("errors and warnings only").takenBy(every),
-        flag("verbose").shortly('v').says("say what is done").takenBy(every),
+        flag("verbose").shortly('v').says("print each step").takenBy(every),
         flag("help").shortly('h').says("this text").takenBy(every),
         flag("version").says("versions of vdb_synth and OpenVDB").takenBy(every),
     };
-    // The seed has metadata of its own.
+    // The seed has a metadata key of its own.
     for (Option& option : table) option.in(Group::Running).ofTheRun();
     return table;
 }

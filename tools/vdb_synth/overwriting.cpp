@@ -1,4 +1,4 @@
-// No output may be a file that is still to be read: a wrong word on the command line would cost the input.
+// No output may be a file that is still to be read: a mistyped command line would destroy the input.
 #include "libvdbsynth/base/error.h"
 #include "tools/vdb_synth/option_set.h"
 #include "tools/vdb_synth/options.h"
@@ -32,7 +32,7 @@ Paths pathsOf(const Arguments& arguments, bool inputsAreOutputs) {
     return paths;
 }
 
-// "-" and "-.obj" are standard streams, whatever lies in the folder.
+// "-" and "-.obj" are standard streams, even if the folder has files of these names.
 bool isStream(const std::string& path) {
     return path == "-" || path.compare(0, 2, "-.") == 0;
 }

@@ -16,13 +16,13 @@ struct StageRecord {
     std::uint64_t peakBytes = 0;  ///< of the process, at the end of the stage
 };
 
-/// Shows progress on standard error (a bar that is redrawn, or one JSON object a line) and keeps the times
-/// of the stages for --report.
+/// Shows progress on standard error (a redrawn bar, or one JSON object per line) and records the times of the
+/// stages for --report.
 class ProgressLog {
 public:
     explicit ProgressLog(ProgressStyle style) : mStyle(style) {}
     void update(const Progress& progress);
-    /// Removes the bar so that words can follow.
+    /// Removes the bar so that text can follow.
     void clear();
     /// Ends the last stage. @return all stages, in order
     const std::vector<StageRecord>& finish();

@@ -108,7 +108,7 @@ Run::~Run() {
 std::vector<std::string> Run::outputPaths() const {
     const std::vector<std::string> paths = arguments.all("output");
     if (paths.empty())
-        throw Error(ErrorCode::InvalidOption, "--output: missing; say where the result goes with -o FILE");
+        throw Error(ErrorCode::InvalidOption, "--output: missing; name the result's file with -o FILE");
     return paths;
 }
 
@@ -151,7 +151,7 @@ ModelOptions Run::modelOptions() const {
     options.resolution = arguments.whole("resolution");
     if (arguments.has("voxel-size") && arguments.has("resolution"))
         throw Error(ErrorCode::InvalidOption, "--voxel-size and --resolution: give one of them");
-    // Where no level set is written, or a map says it, models have the default.
+    // Commands that write no level set use the library's default; repeat uses the map's.
     if (!arguments.text("half-width").empty()) options.halfWidth = arguments.real("half-width");
     const bool shell = arguments.text("open") == "shell";
     if (shell) options.solid.open = OpenMesh::Shell;

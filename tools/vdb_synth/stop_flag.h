@@ -3,7 +3,7 @@
 
 namespace vdbsynth::cli {
 
-/// True once SIGINT or SIGTERM came in.
+/// True once SIGINT or SIGTERM was received.
 const std::atomic<bool>* stopFlag();
 
 }  // namespace vdbsynth::cli

@@ -2,7 +2,7 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
-#include "libvdbsynth/io/whole_file.h"
+#include "libvdbsynth/io/readers/whole_file.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -23,13 +23,13 @@ bool isStream(const std::string& path) {
     return path == "-" || path.compare(0, 2, "-.") == 0;
 }
 
-// True if --as names a kind of file, not what to write: "mesh" is the latter, MEDIT files are -.mesh.
+// True if --as names a kind of file, not what to write: "mesh" is what to write; MEDIT files are -.mesh.
 bool namesExtension(const std::string& as) {
     return as != "mesh" && isKnownExtension(as);
 }
 
 [[noreturn]] void failFull() {
-    throw Error(ErrorCode::Io, "standard input: there is no room for it on the disk of temporary files");
+    throw Error(ErrorCode::Io, "standard input: does not fit on the disk of temporary files");
 }
 
 // @throw Error Io for what is not written, Cancelled
@@ -69,8 +69,8 @@ std::string Streams::open(const std::string& name, const std::string& extension,
         std::error_code problem;
         const std::filesystem::path place = std::filesystem::temp_directory_path(problem);
         if (problem) throw Error(ErrorCode::Io, "there is no folder for temporary files; set TMPDIR");
-        // Others write to that place too, and could put a link where a name is known before: mkdtemp's is
-        // not, and only this user may look into it.
+        // Others can write to that folder too and could place a link under a predictable name. mkdtemp's name
+        // is unpredictable, and only this user can open the folder.
         std::string folder = (place / "vdb_synth.XXXXXX").string();
         if (!::mkdtemp(folder.data()))
             throw Error(ErrorCode::Io,
@@ -105,9 +105,8 @@ void Streams::readInput(std::string& path, const Arguments& arguments) {
     if (!extension.empty()) return;
     const std::string guess = extensionOfContent(start);
     if (guess.empty())
-        throw Error(
-            ErrorCode::InvalidOption,
-            "-: standard input does not tell what kind of file it is; name it -.EXT, for example -.obj");
+        throw Error(ErrorCode::InvalidOption,
+                    "-: the kind of file on standard input is unknown; name it -.EXT, for example -.obj");
     path = open("-", "." + guess, false);
     if (::rename(temporary.c_str(), path.c_str()) != 0)
         throw Error(ErrorCode::Io, "standard input: its temporary file cannot be renamed");
@@ -122,7 +121,7 @@ Arguments Streams::spooled(Arguments arguments, bool inputsAreOutputs) {
         std::find(arguments.inputs.begin(), arguments.inputs.end(), "-") != arguments.inputs.end();
     if (namesExtension(as) && !plain)
         throw Error(ErrorCode::InvalidOption,
-                    "--as " + as + ": says what kind of file standard input is, and no input is -");
+                    "--as " + as + ": is the kind of file on standard input, but no input is -");
     if (inputs > 1) throw Error(ErrorCode::InvalidOption, "standard input can be one input only");
     if (outputs > 1)
         throw Error(ErrorCode::InvalidOption, "--output: standard output can take one output only");
@@ -132,8 +131,9 @@ Arguments Streams::spooled(Arguments arguments, bool inputsAreOutputs) {
             std::string& path = (*paths)[i];
             if (!isStream(path)) continue;
             if (path == "-")
-                throw Error(ErrorCode::InvalidOption,
-                            "--output -: say what to write to standard output with -.EXT, for example -.ply");
+                throw Error(
+                    ErrorCode::InvalidOption,
+                    "--output -: give the kind of file for standard output as -.EXT, for example -.ply");
             path = open(path, path.substr(1), true);
         }
     for (std::string& path : arguments.inputs)

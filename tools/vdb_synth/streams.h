@@ -7,26 +7,26 @@
 
 namespace vdbsynth::cli {
 
-/// Standard input and output as files. The path `-.EXT` (or `-` where the content tells what it is, or --as
-/// EXT does) means standard input among the inputs, and `-.EXT` standard output after -o. What comes in is
-/// kept in a temporary file, since readers go over a file more than once; what goes out is written whole
-/// before a byte of it leaves. Both lie in a folder of their own below TMPDIR that only this user can open.
+/// Standard input and output as files. The path `-.EXT` means standard input among the inputs (or `-` where
+/// the content shows its kind or --as EXT names it), and standard output after -o. Input is stored in a
+/// temporary file, since readers read a file more than once; output is complete before its first byte is
+/// sent. Both are in a folder of their own below TMPDIR that only this user can open.
 class Streams {
 public:
-    /// @param onTemporary  told each temporary's path before it is made, and that of their folder when it is
+    /// @param onTemporary  called with each temporary path before it is created, and with their folder's
     explicit Streams(std::function<void(const std::string&)> onTemporary)
         : mOnTemporary(std::move(onTemporary)) {}
     ~Streams();
     Streams(const Streams&) = delete;
     Streams& operator=(const Streams&) = delete;
 
-    /// @param inputsAreOutputs  the inputs are the names of what is written, as those of `make`
-    /// The arguments with paths of temporaries in the place of streams; reads standard input to its end.
-    /// @throw Error InvalidOption (two inputs from it, two outputs to it, no extension to tell its kind), Io
+    /// @param inputsAreOutputs  the inputs are the names of the files to write, as for `make`
+    /// The arguments with temporary paths in place of streams; reads standard input to its end.
+    /// @throw Error InvalidOption (two inputs from it, two outputs to it, no extension for its kind), Io
     Arguments spooled(Arguments arguments, bool inputsAreOutputs);
-    /// Copies what was written for standard output to it. @throw Error Io
+    /// Copies the temporary output to standard output. @throw Error Io
     void release();
-    /// A message with the streams' names where it has those of their temporaries.
+    /// A message with the streams' names in place of their temporary files' names.
     std::string named(std::string text) const;
 
 private:

@@ -24,7 +24,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// What the child is told: the number of its end of the pipe, and its parent's process ("7,4711").
+// Passed to the child: the number of its end of the pipe, and its parent's process id ("7,4711").
 constexpr const char* kLineVariable = "VDBSYNTH_SUPERVISOR_LINE";
 
 std::atomic<bool> gStop{false};
@@ -35,7 +35,7 @@ extern "C" void onStopSignal(int signal) {
     gStop.store(true, std::memory_order_relaxed);
 }
 
-// What the parent knows of the child.
+// The child's state as the parent knows it.
 struct Child {
     pid_t process = 0;
     std::string pending;  // bytes of an unfinished message
@@ -77,7 +77,7 @@ double secondsAllowed(const std::string& path) {
 }
 
 void removeTemporaries(const Child& child) {
-    // Backwards, so that a folder comes after what lies in it.
+    // In reverse order, so that a folder is removed after the files in it.
     for (auto path = child.temporaries.rbegin(); path != child.temporaries.rend(); ++path)
         std::remove(path->c_str());
 }
@@ -93,8 +93,8 @@ int reportDeath(const Child& child, int signal, bool hung) {
     }
     if (signal == SIGKILL) {
         std::fprintf(stderr,
-                     "%s%sthe work was killed, most likely out of memory; use larger voxels, a smaller size "
-                     "or --max-memory\n",
+                     "%s%sthe process was killed, most likely out of memory; use larger voxels, a smaller "
+                     "size or --max-memory\n",
                      program, child.reading.empty() ? "" : (child.reading + ": ").c_str());
         return 1;
     }
@@ -177,11 +177,11 @@ void SupervisorLine::send(char kind, const std::string& text) const {
 
 namespace {
 
-// The child's side: the work, with the parent's death as its own.
+// The child's side: runs the work, and ends when the parent dies.
 int superviseChild(int file, pid_t parent, const std::function<int(const SupervisorLine&)>& work) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    // A parent that died before the line above sends no signal. Its number tells, not 1: a container's entry
-    // point is process 1 itself, and a subreaper may have any.
+    // A parent that died before the line above sends no signal. Compare with the parent's process id, not
+    // with 1: a container's entry point is process 1 itself, and a subreaper may have any id.
     if (::getppid() != parent) return 1;
     ::fcntl(file, F_SETFD, FD_CLOEXEC);
     installStopHandlers();
@@ -190,7 +190,7 @@ int superviseChild(int file, pid_t parent, const std::function<int(const Supervi
     ::_exit(code);  // everything is written; the grids need no freeing
 }
 
-// Reads kLineVariable and clears it. @return false where this process is nobody's child
+// Reads kLineVariable and clears it. @return false in a process that no supervisor started
 bool takeLine(int& file, pid_t& parent) {
     const char* variable = std::getenv(kLineVariable);
     if (!variable) return false;

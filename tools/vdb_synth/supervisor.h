@@ -4,7 +4,7 @@
 
 namespace vdbsynth::cli {
 
-/// Talks from the working process to the one that watches it. All calls are no-ops without a supervisor.
+/// The working process's line to its supervisor. All calls are no-ops without a supervisor.
 class SupervisorLine {
 public:
     explicit SupervisorLine(int file = -1) : mFile(file) {}
@@ -18,11 +18,11 @@ private:
     int mFile;
 };
 
-/// Runs `work` in a child process and watches it: a child that crashes, is killed, runs out of memory or
-/// hangs while it reads a file becomes one line on standard error and an exit code by the contract, and its
-/// temporary files are removed. SIGINT and SIGTERM are passed on; a child that does not end within five
-/// seconds is killed. The child is this program run again with the same words, so `work` must come from them
-/// alone.
+/// Runs `work` in a child process and watches it. If the child crashes, is killed, runs out of memory or
+/// hangs while it reads a file, one line on standard error and an exit code by the contract report it, and
+/// its temporary files are removed. SIGINT and SIGTERM are passed on; a child that does not end within five
+/// seconds is killed. The child is this program run again with the same arguments, so `work` must depend on
+/// them alone.
 /// @return the exit code for this process
 int supervise(char** argv, const std::function<int(const SupervisorLine&)>& work);
 

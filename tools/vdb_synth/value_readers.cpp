@@ -76,7 +76,7 @@ bool readRange(const std::string& text, double& low, double& high) {
 
 bool readBox(const std::string& text, IndexBox& box) {
     const std::vector<std::string> parts = splitAtCommas(text);
-    constexpr int kFar = 1 << 28;  // beyond this, sizes of boxes leave int
+    constexpr int kFar = 1 << 28;  // beyond this, sizes of boxes exceed int
     int ends[6] = {};
     if (parts.size() != 6) return false;
     for (std::size_t i = 0; i < 6; ++i)
@@ -116,7 +116,7 @@ bool readLabels(const std::string& text, std::vector<std::pair<double, double>>&
         const std::size_t dash = part.find('-', 1);  // the first may be a sign
         const std::string low = part.substr(0, dash);
         const std::string high = dash == std::string::npos ? low : part.substr(dash + 1);
-        // Samples are floats: a label is the float that is meant, not the double beside it.
+        // Samples are floats: a label is the nearest float, not the double.
         float values[2] = {};
         if (!parseReal(low, values[0]) || !parseReal(high, values[1]) || values[0] > values[1]) return false;
         labels.emplace_back(double(values[0]), double(values[1]));

@@ -1,0 +1,42 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/grid/brick_field.h"
+
+#include <functional>
+#include <memory>
+
+namespace vdbsynth {
+
+struct RebuildOptions {
+    float halfWidth = 3;  ///< [voxels] of the rebuilt band, at least 1.5
+    float voxelSize = 1;  ///< what one voxel is in the unit of the field's values
+    /// True: distances that the field has of its own stay where they are good ones (signed_distance.h), up to
+    /// `band`; false: only its zero level is meant.
+    bool keepDistances = false;
+    float band = 3;  ///< [voxels] where the field's own distances end
+};
+
+/// Gives a field that covers a box of index space at least, for as long as a part needs it.
+using FieldReader = std::function<std::shared_ptr<const BrickField>(const IndexBox& box)>;
+/// Takes one part of a rebuilt band, from the calling thread in a fixed order: distances [voxels] over a box
+/// of index space in whole cubes of 8 voxels, at multiples of 8.
+using PartTaker = std::function<void(const BrickField& part)>;
+
+/// Distances to the zero level of a field whose sign says inside and outside, as a valid narrow band: the
+/// zero level is meshed (zero_level.h), distances are exact to that mesh, signs are those of the field, so
+/// cavities that no outside path reaches keep theirs. Large boxes are rebuilt in parts, with the same bits:
+/// meshes and distances of all of it at once take several times the memory of the result.
+/// @param read  called from many threads
+/// @param box   of index space: what the band may touch
+/// @throw Error Cancelled
+/// @par Repeats same bits for any number of threads
+void rebuildBand(const FieldReader& read, const IndexBox& box, const RebuildOptions& options,
+                 const PartTaker& take, const RunContext& ctx = {});
+
+/// rebuildBand of a whole field, as one.
+/// @param field  in index space
+/// @return distances [voxels] over the field's box grown by the half-width to whole cubes of 8 voxels at
+///         multiples of 8
+BrickField rebuiltBand(const BrickField& field, const RebuildOptions& options, const RunContext& ctx = {});
+
+}  // namespace vdbsynth

@@ -1,0 +1,188 @@
+#include "libvdbsynth/pipeline/analogy/analogy.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/distance/close_field.h"
+#include "libvdbsynth/pipeline/analogy/analogy_steps.h"
+#include "libvdbsynth/vdb/attribute_transfer.h"
+#include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/control_grids.h"
+#include "libvdbsynth/vdb/coord.h"
+
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+
+namespace vdbsynth {
+namespace {
+
+DirectionSource directionOfPair(const LevelSet& plain, const DirectionSource& given) {
+    if (given.kind != DirectionSource::Kind::Automatic) return given;
+    DirectionSource source;
+    const auto recorded = plain.grid->getMetadata<openvdb::StringMetadata>(kDirectionKey);
+    if (recorded) parseDirection(recorded->value(), source);
+    return source;
+}
+
+// The result as a map: positions in the pairs' index spaces, on voxels of the target's.
+SourceMap mapOf(const VolumeAnalogyResult& made, const std::vector<PairFields>& fields,
+                const std::vector<AnalogyModelPair>& pairs, double scale) {
+    SourceMap map;
+    map.method = MapMethod::Analogy;
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+        const LevelSet& textured = *pairs[p].textured;
+        map.exemplars.push_back({fields[p].box, textured.domain, levelSetHash(*textured.grid),
+                                 fields[p].cutTextured, transformOf(*textured.grid)});
+    }
+    map.voxelSize = voxelSizeOf(*pairs.front().textured->grid);
+    map.analogy.scale = scale;
+    map.analogy.depths = made.depths;
+    return map;
+}
+
+// @param corner  of the target's box
+ElementSources placed(const ElementSources& made, const std::vector<PairFields>& fields, const Index3& corner,
+                      double scale) {
+    ElementSources sources;
+    for (std::size_t i = 0; i < made.size(); ++i) {
+        Source source = *made.strongest(i);
+        const FieldPlace& place = fields[std::size_t(source.exemplar)].place;
+        source.position = asWritten(place.corner + source.position * place.step);
+        source.scale = float(scale);
+        sources.add(made.voxels()[i] + corner, source);
+    }
+    return sources;
+}
+
+GridPtr directionGrid(const FrameField& frames, const FieldPlace& place, const IndexBox& box) {
+    auto grid = openvdb::Vec3SGrid::create(openvdb::Vec3f(0));
+    grid->setName("direction");
+    grid->setVectorType(openvdb::VEC_CONTRAVARIANT_RELATIVE);
+    grid->setTransform(place.like->transform().copy());
+    const Vec3d origin = place.toWorld({0, 0, 0});
+    const SurfaceShell& shell = frames.shell();
+    for (std::size_t i = 0; i < shell.size(); ++i) {
+        const Vec3d world = normalized(place.toWorld(cast<double>(frames.directions().tangent[i])) - origin);
+        grid->tree().setValueOn(toCoord(shell.table[i] + box.min), openvdb::Vec3f(toVec(world)));
+    }
+    return grid;
+}
+
+AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const LevelSet& target,
+                          const AnalogyOptions& options, const RunContext& ctx) {
+    AnalogyResult result;
+    const MappedTarget mapped{levelSetHash(*target.grid), voxelSizeOf(*target.grid), target.domainRecorded};
+    std::vector<PairFields> fields;
+    for (const AnalogyModelPair& pair : pairs) {
+        fields.push_back(gatherPair(pair, options.scale, ctx));
+        const float reach = reachOf(*fields.back().plain, *fields.back().textured);
+        if (reach > float(kMostReach - 1) * float(std::min(options.scale, 1.0)))
+            throw Error(ErrorCode::Unusable, "the texture reaches more than " +
+                                                 std::to_string(kMostReach - 1) +
+                                                 " voxels from the plain model's surface; use larger voxels, "
+                                                 "or check that the two models of the pair coincide");
+        result.reach = std::max(result.reach, reach);
+    }
+    const int levels = options.synthesis.levels == 0 ? 3 : std::clamp(options.synthesis.levels, 1, 6);
+    const int radius = (options.synthesis.half + 2) << (levels - 1);
+    const int band = int(std::ceil(result.reach)) + radius + 2;
+    const CutFaces cut = facesTouched(target);
+    const IndexBox box = grown(target.domain, cut, band);
+    // Six bytes for each voxel of the box, whose bricks and slots they are, and 160 for each voxel of the
+    // widened band, of frames, features and sources. Tuned with tools/dev/memory_models.py: 1.4 times the
+    // peak.
+    requireMemory(ctx, double(box.volume()) * 6 + double(activeVoxels(*target.grid)) / 6 * 2 * band * 160,
+                  "the analogy", "use larger voxels, fewer `levels` or a smaller `half`");
+    const auto plain =
+        std::make_shared<const BrickField>(gatherWideBand(*target.grid, box, cut, float(band), ctx));
+    const FieldPlace place{target.grid.get(), {double(box.min.x), double(box.min.y), double(box.min.z)}, 1};
+    const FrameField frames = framesOf(plain, place, options.direction, "the target", ctx);
+    std::vector<FrameField> pairFrames;
+    for (std::size_t p = 0; p < pairs.size(); ++p)
+        pairFrames.push_back(framesOf(fields[p].plain, fields[p].place,
+                                      directionOfPair(*pairs[p].plain, options.exemplarDirection), "the pair",
+                                      ctx));
+    std::vector<AnalogyPair> given;
+    for (std::size_t p = 0; p < pairs.size(); ++p)
+        given.push_back({fields[p].plain, fields[p].textured, &pairFrames[p], fields[p].inner});
+    VolumeAnalogyResult made = makeAnalogy(given, *plain, frames, options.synthesis, ctx);
+    SourceMap& map = result.map = mapOf(made, fields, pairs, options.scale);
+    map.target = mapped;
+    map.elements = placed(made.sources, fields, box.min, options.scale);
+    map.targetBox = box;
+    map.targetDomain = target.domain;
+    map.cut = cut;
+    map.band = float(band);
+    map.halfWidth = options.halfWidth;
+    map.analogy.strength = float(options.strength);
+    if (options.mask)
+        map.analogy.weight = sampledWeight(*options.mask, {box, {}, {}, target.grid.get()},
+                                           float(options.strength), "`mask`", ctx);
+    std::vector<ExemplarSamples> samples;
+    std::vector<const LevelSet*> textured;
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+        samples.push_back({fields[p].textured, fields[p].place.corner, options.scale});
+        textured.push_back(pairs[p].textured);
+    }
+    result.model = analogyThroughMap(map, 1, samples, *plain, target, result.reach, ctx);
+    result.model.attributes =
+        transferAttributes(map, textured, *result.model.grid, AttributeValues::Copied, ctx);
+    if (options.keepDirections) result.directions = directionGrid(frames, place, box);
+    result.levels = std::move(made.levels);
+    for (const Vec3f& p : frames.directions().singularities)
+        result.singularities.push_back(place.toWorld(cast<double>(p)));
+    result.cut = frames.sweep().cut;
+    return result;
+}
+
+}  // namespace
+
+namespace {
+
+void requireDirection(const DirectionSource& source, const char* field) {
+    using Kind = DirectionSource::Kind;
+    const auto finite = [](const Vec3d& v) { return std::isfinite(dot(v, v)); };
+    requireOption(source.kind != Kind::Grid || source.grid, field, "Grid", "given with a `grid`");
+    const bool axis = source.kind == Kind::Axis || source.kind == Kind::Around;
+    requireOption(!axis || (finite(source.axis) && dot(source.axis, source.axis) > 0), field,
+                  "Axis or Around", "given with an `axis` that is not 0");
+    if (source.kind != Kind::Strokes) return;
+    requireOption(!source.strokes.empty(), field, "Strokes", "given with `strokes`");
+    for (const Stroke& stroke : source.strokes)
+        requireOption(finite(stroke.position) && finite(stroke.direction), field, "Strokes",
+                      "given with `strokes` of finite numbers");
+}
+
+}  // namespace
+
+void validate(const AnalogyOptions& options, const std::vector<AnalogyModelPair>& pairs,
+              const LevelSet& target) {
+    requireOption(options.scale >= 0.25 && options.scale <= 4, "scale", roundedText(options.scale, 6),
+                  "from 0.25 to 4");
+    requireOption(options.strength >= 0 && options.strength <= 1, "strength",
+                  roundedText(options.strength, 6), "from 0 to 1");
+    validate(options.synthesis);
+    requireHalfWidth(double(options.halfWidth));
+    requireDirection(options.direction, "direction");
+    requireDirection(options.exemplarDirection, "exemplarDirection");
+    requireOption(!pairs.empty(), "pairs", "0", "at least one");
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+        const std::string what = pairs.size() > 1 ? "pair " + std::to_string(p + 1) : "the pair";
+        requireModel(pairs[p].plain, what + ", plain");
+        requireModel(pairs[p].textured, what + ", textured");
+        requireOnePlace(pairs[p]);
+    }
+    requireModel(&target, "the target");
+}
+
+AnalogyResult makeAnalogyModel(const std::vector<AnalogyModelPair>& pairs, const LevelSet& target,
+                               const AnalogyOptions& options, const RunContext& ctx) {
+    validate(options, pairs, target);
+    return withThreads(ctx, [&] { return madeAnalogy(pairs, target, options, ctx); });
+}
+
+}  // namespace vdbsynth

@@ -1,0 +1,84 @@
+#pragma once
+#include "libvdbsynth/analogy/analogy_options.h"
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/map/source_map.h"
+#include "libvdbsynth/vdb/level_set.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace vdbsynth {
+
+/// A direction given at a position. [world]
+struct Stroke {
+    Vec3d position, direction;
+};
+
+/// Which way a texture runs over a surface.
+struct DirectionSource {
+    enum class Kind {
+        Automatic,  ///< along the least curvature (curvature_direction.h)
+        Axis,       ///< along `axis`
+        Around,     ///< around `axis` through the middle of the model
+        Radial,     ///< away from the middle of the model
+        Grid,       ///< the vectors of `grid`, or the gradient of its scalars
+        Strokes     ///< the `strokes`, diffused in between
+    } kind = Kind::Automatic;
+    Vec3d axis{0, 0, 1};  ///< [world]
+    GridConstPtr grid;
+    std::vector<Stroke> strokes;
+};
+
+/// Metadata of a level set with the direction of its texture, in the form that
+/// parseDirection reads; `make` writes it.
+inline constexpr const char* kDirectionKey = "vdbsynth:direction";
+
+/// `axis:x`, `axis:-z`, `around:y`, `radial`, `curvature`.
+/// @return false if the text is none of these
+bool parseDirection(const std::string& text, DirectionSource& source);
+
+struct AnalogyOptions {
+    VolumeAnalogyOptions synthesis;
+    DirectionSource direction;          ///< over the target
+    DirectionSource exemplarDirection;  ///< over the plain model of each pair
+    double scale = 1;              ///< of the texture, 0.25..4: 2 is twice as large in the target's voxels
+    double strength = 1;           ///< 0..1: blend from the target to the result
+    GridConstPtr mask;             ///< 0..1 over the target, by which strength is multiplied; null: 1
+    float halfWidth = kHalfWidth;  ///< [voxels] of the result, 1.5..100
+    bool keepDirections = false;   ///< fills AnalogyResult::directions
+};
+
+struct AnalogyModelPair {
+    const LevelSet* plain = nullptr;
+    const LevelSet* textured = nullptr;
+};
+
+/// @throw Error InvalidOption (a field out of its range, no pairs, null models, a direction without its grid,
+/// axis or strokes), ShapeMismatch (the models of a pair differ in voxels), and what
+/// requireModel (vdb/level_set.h) throws
+void validate(const AnalogyOptions& options, const std::vector<AnalogyModelPair>& pairs,
+              const LevelSet& target);
+
+struct AnalogyResult {
+    LevelSet model;
+    SourceMap map;       ///< what repeatMap (repeat.h) reads the result through
+    GridPtr directions;  ///< Vec3S next to the target's surface, unit length [world]
+    std::vector<AnalogyLevelStats> levels;
+    std::vector<Vec3d> singularities;  ///< [world] of the target's directions
+    double cut = 0;                    ///< SweepDistance::cut of the target
+    float reach = 0;                   ///< [voxels] largest distance of the texture from the plain surface
+};
+
+/// plain : textured = target : result (analogy/volume_analogy.h), rebuilt to a valid narrow band; attributes
+/// of the textured models are transferred. Faces of recorded domains that a solid touches are cuts: the pair
+/// continues beyond them and nothing is copied from there, and the target is capped there again. Elsewhere
+/// the result may extend beyond its domain.
+/// @throw Error as validate; ShapeMismatch (the models of a pair do not overlap), Unusable (a pair that is
+/// too small, a texture that reaches too far from the surface, no direction possible),
+/// EmptyInput, Memory, Cancelled
+/// @par Cost    see makeAnalogy    @par Repeats same bits for any number of threads
+AnalogyResult makeAnalogyModel(const std::vector<AnalogyModelPair>& pairs, const LevelSet& target,
+                               const AnalogyOptions& options, const RunContext& ctx = {});
+
+}  // namespace vdbsynth

@@ -1,0 +1,116 @@
+// Input of analogy: models as fields of distances over one box.
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/grid/field_sampling.h"
+#include "libvdbsynth/pipeline/analogy/analogy_steps.h"
+#include "libvdbsynth/vdb/bricks.h"
+
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace vdbsynth {
+namespace {
+
+BrickField scaled(const BrickField& field, double scale, const RunContext& ctx) {
+    const Index3 size = field.box().size();
+    Index3 to;
+    for (int axis = 0; axis < 3; ++axis) to[axis] = std::max(1, int(std::lround(size[axis] * scale)));
+    const float back = float(1 / scale);
+    return BrickField::generate(IndexBox::fromSize(to), ctx, [&](const IndexBox& brick, float* samples) {
+        for (int i = 0; i < BrickField::kSamples; ++i) {
+            const Index3 p = brick.min + Index3{i >> 6, (i >> 3) & 7, i & 7};
+            samples[i] = sampleTrilinear(field, {float(p.x) * back, float(p.y) * back, float(p.z) * back}) *
+                         float(scale);
+        }
+    });
+}
+
+}  // namespace
+
+void requireOnePlace(const AnalogyModelPair& pair) {
+    const auto& a = pair.plain->grid->transform();
+    const auto& b = pair.textured->grid->transform();
+    if (!(a == b))
+        throw Error(ErrorCode::ShapeMismatch,
+                    "the two models of the pair must have the same voxels in the same place: voxel sizes " +
+                        std::to_string(voxelSizeOf(*pair.plain->grid)) + " and " +
+                        std::to_string(voxelSizeOf(*pair.textured->grid)) +
+                        "; convert both with the same `voxelSize`");
+}
+
+BrickField gatherTextured(const LevelSet& textured, const IndexBox& box, const CutFaces& cut, float reach,
+                          double scale, const RunContext& ctx) {
+    BrickField field = gatherWideBand(*textured.grid, box, cut, reach, ctx);
+    return scale == 1 ? field : scaled(field, scale, ctx);
+}
+
+CutFaces facesTouched(const LevelSet& model) {
+    CutFaces cut{};
+    if (!model.domainRecorded) return cut;
+    const IndexBox solid = solidBox(*model.grid, "the model");
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        cut[2 * axis] = solid.min[int(axis)] <= model.domain.min[int(axis)];
+        cut[2 * axis + 1] = solid.max[int(axis)] >= model.domain.max[int(axis)];
+    }
+    return cut;
+}
+
+IndexBox grown(const IndexBox& domain, const CutFaces& cut, int by) {
+    IndexBox box = domain;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (!cut[2 * axis]) box.min[int(axis)] -= by;
+        if (!cut[2 * axis + 1]) box.max[int(axis)] += by;
+    }
+    return box;
+}
+
+float reachOf(const BrickField& plain, const BrickField& textured) {
+    float reach = 0;
+    std::vector<float> a(std::size_t(plain.box().size().z)), b(a.size());
+    for (int x = 0; x <= plain.box().max.x; ++x)
+        for (int y = 0; y <= plain.box().max.y; ++y) {
+            plain.readBox({x, y, 0}, {1, 1, plain.box().size().z}, a.data());
+            textured.readBox({x, y, 0}, {1, 1, plain.box().size().z}, b.data());
+            for (std::size_t z = 0; z < a.size(); ++z)
+                if (std::abs(b[z]) < 1) reach = std::max(reach, std::abs(a[z]));
+        }
+    return reach;
+}
+
+PairFields gatherPair(const AnalogyModelPair& pair, double scale, const RunContext& ctx) {
+    const CutFaces cutPlain = facesTouched(*pair.plain), cutTextured = facesTouched(*pair.textured);
+    CutFaces cut;
+    for (std::size_t f = 0; f < cut.size(); ++f) cut[f] = cutPlain[f] || cutTextured[f];
+    IndexBox domain = pair.plain->domain;
+    const IndexBox& other = pair.textured->domain;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const int a = int(axis);
+        domain.min[a] =
+            cut[2 * axis] ? std::max(domain.min[a], other.min[a]) : std::min(domain.min[a], other.min[a]);
+        domain.max[a] =
+            cut[2 * axis + 1] ? std::min(domain.max[a], other.max[a]) : std::max(domain.max[a], other.max[a]);
+    }
+    if (domain.empty())
+        throw Error(ErrorCode::ShapeMismatch, "the two models of the pair do not overlap: domains " +
+                                                  boxText(pair.plain->domain) + " and " + boxText(other));
+    PairFields fields;
+    fields.box = grown(domain, cut, kMostReach);
+    requireMemory(ctx, double(fields.box.volume()) * 12, "the pair", "use larger voxels or crop the pair");
+    const auto gathered = [&](const LevelSet& model, const CutFaces& faces) {
+        return std::make_shared<const BrickField>(
+            gatherTextured(model, fields.box, faces, float(kMostReach), scale, ctx));
+    };
+    fields.plain = gathered(*pair.plain, cutPlain);
+    fields.textured = gathered(*pair.textured, cutTextured);
+    fields.cutTextured = cutTextured;
+    fields.inner = fields.plain->box();
+    fields.place = {pair.plain->grid.get(),
+                    {double(fields.box.min.x), double(fields.box.min.y), double(fields.box.min.z)},
+                    1 / scale};
+    return fields;
+}
+
+}  // namespace vdbsynth

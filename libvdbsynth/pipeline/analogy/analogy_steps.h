@@ -1,0 +1,72 @@
+#pragma once
+#include "libvdbsynth/analogy/volume_analogy.h"
+#include "libvdbsynth/distance/close_field.h"
+#include "libvdbsynth/pipeline/analogy/analogy.h"
+
+#include <memory>
+
+// Steps of analogy; for its .cpp files only.
+namespace vdbsynth {
+
+/// Placement of a field's voxels: voxel p of the field is at index corner + p * step of a grid.
+struct FieldPlace {
+    const openvdb::FloatGrid* like = nullptr;
+    Vec3d corner;
+    double step = 1;
+
+    Vec3d toWorld(const Vec3d& voxel) const;
+    /// Of a direction, in voxels.
+    Vec3d fromWorldDirection(const Vec3d& direction) const;
+};
+
+inline constexpr int kMostReach = 40;  ///< [voxels] farthest that a texture may reach from its plain surface
+
+/// @throw Error ShapeMismatch unless the models of a pair have the same voxels
+void requireOnePlace(const AnalogyModelPair& pair);
+
+/// The faces of its recorded domain that a solid passes through.
+CutFaces facesTouched(const LevelSet& model);
+/// A domain with a margin at the faces that are not cuts.
+IndexBox grown(const IndexBox& domain, const CutFaces& cut, int by);
+
+/// A pair as fields over one box, at the texture's scale.
+struct PairFields {
+    std::shared_ptr<const BrickField> plain, textured;
+    IndexBox box;            ///< index space of the pair
+    IndexBox inner;          ///< of the fields
+    CutFaces cutTextured{};  ///< faces of the box where the textured solid continues beyond
+    FieldPlace place;
+};
+
+/// @throw Error ShapeMismatch (other voxels, or no overlap), Memory
+PairFields gatherPair(const AnalogyModelPair& pair, double scale, const RunContext& ctx);
+
+/// A textured model over a box of its index space at the texture's scale, as gatherPair makes it.
+BrickField gatherTextured(const LevelSet& textured, const IndexBox& box, const CutFaces& cut, float reach,
+                          double scale, const RunContext& ctx);
+
+/// A position as a map's file holds it: a voxel, and single precision from there.
+Vec3d asWritten(const Vec3d& position);
+
+/// The result of a map applied to textured fields and a plain model, rebuilt and stamped; without attributes.
+/// @param factor  see finerMap; `map` is at its original resolution
+/// @param plain   distances over the target's box [voxels of the target]
+/// @param reach   [voxels] depth of the texture, for a message; 0: unknown
+LevelSet analogyThroughMap(const SourceMap& map, int factor, const std::vector<ExemplarSamples>& textured,
+                           const BrickField& plain, const LevelSet& target, float reach,
+                           const RunContext& ctx);
+
+/// repeatMap for an analogy.
+LevelSet repeatAnalogy(const SourceMap& map, int factor, const std::vector<const LevelSet*>& textured,
+                       const LevelSet& target, const RunContext& ctx);
+
+/// Largest distance of the textured surface from the plain one. [voxels]
+float reachOf(const BrickField& plain, const BrickField& textured);
+
+/// Frames around a field's surface, from a source of directions.
+/// @param what  for messages, such as "the target"
+/// @throw Error Unusable (no direction anywhere), EmptyInput, BadData (a grid of another kind)
+FrameField framesOf(std::shared_ptr<const BrickField> distance, const FieldPlace& place,
+                    const DirectionSource& source, const std::string& what, const RunContext& ctx);
+
+}  // namespace vdbsynth

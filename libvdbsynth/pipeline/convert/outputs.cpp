@@ -1,0 +1,152 @@
+#include "libvdbsynth/pipeline/convert/outputs.h"
+#include "libvdbsynth/raster/height_field.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/distance/close_field.h"
+#include "libvdbsynth/io/mesh_file.h"
+#include "libvdbsynth/io/path.h"
+#include "libvdbsynth/io/raster_file.h"
+#include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/convert/attribute_grids.h"
+#include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
+#include "libvdbsynth/vdb/convert/level_set_to_points.h"
+
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace vdbsynth {
+namespace {
+
+bool isHeightPath(const std::string& path) {
+    return extensionOf(path) == "png" || extensionOf(path) == "exr";
+}
+
+// Heights in world units: EXR holds them unchanged; in PNG black is zero, or the lowest if that is below
+// zero, and white is the highest, or the requested height.
+void writeHeights(const LevelSet& model, const std::string& path, const std::string& temporary,
+                  const ModelOutputOptions& options, const RunContext& ctx) {
+    requireMemory(ctx, double(model.domain.volume()) * 8.0 / 512, path, "crop the model");
+    const int axis = options.plane == HeightPlane::XY ? 2 : options.plane == HeightPlane::YZ ? 0 : 1;
+    // The caps at the sides of a recorded domain are not part of the surface.
+    CutFaces cut{};
+    for (std::size_t face = 0; face < 6; ++face) cut[face] = model.domainRecorded && int(face / 2) != axis;
+    const BrickField field = gatherWideBand(*model.grid, model.domain, cut, kHalfWidth, ctx);
+    HeightImage image = topHeights(field, options.plane, ctx);
+    float low = 0, high = 0;
+    std::size_t missing = 0;
+    for (float& height : image.heights) {
+        if (std::isnan(height)) {
+            ++missing;
+            continue;
+        }
+        openvdb::Vec3d place(0.0);
+        place[axis] = double(height) + model.domain.min[axis];
+        height = float(model.grid->indexToWorld(place)[axis]);
+        low = std::min(low, height);
+        high = std::max(high, height);
+    }
+    if (missing == image.heights.size())
+        throw Error(ErrorCode::EmptyInput, path + ": no column of the domain meets a surface");
+    if (missing > 0)
+        message(ctx, MessageLevel::Note,
+                path + ": " + std::to_string(missing) + " of " + std::to_string(image.heights.size()) +
+                    " pixels meet no surface; they are transparent");
+    if (extensionOf(path) == "exr") return writeGreyExr(temporary, image.columns, image.rows, image.heights);
+    if (options.height > 0) high = float(options.height);
+    message(ctx, MessageLevel::Note,
+            path + ": black is a height of " + roundedText(double(low), 6) + ", white one of " +
+                roundedText(double(high), 6) + " (world)");
+    for (float& height : image.heights) height = high > low ? (height - low) / (high - low) : 0;
+    writeGreyPng(temporary, image.columns, image.rows, image.heights);
+}
+
+void writeOne(const LevelSet& model, const std::string& path, const std::string& temporary,
+              const ModelOutputOptions& options, std::optional<Mesh>& mesh, const RunContext& ctx) {
+    if (extensionOf(path) == "vdb") {
+        std::vector<GridPtr> grids{model.grid};
+        grids.insert(grids.end(), model.attributes.begin(), model.attributes.end());
+        grids.insert(grids.end(), options.extraGrids.begin(), options.extraGrids.end());
+        writeVdb(temporary, grids, options.metadata);
+        return;
+    }
+    if (isHeightPath(path)) return writeHeights(model, path, temporary, options, ctx);
+    if (options.points) {
+        PointOptions pointOptions;
+        pointOptions.spacing = options.spacing;
+        PointCloud cloud = levelSetToPoints(*model.grid, pointOptions, ctx);
+        cloud.attributes = gridsToAttributes(model.attributes, cloud.points, ctx);
+        writePointsPly(temporary, cloud);
+        return;
+    }
+    if (!mesh) {
+        MeshingOptions meshing;
+        meshing.adaptivity = options.adaptivity;
+        meshing.sharp = options.sharp;
+        meshing.source = model.source.get();
+        mesh = levelSetToMesh(*model.grid, meshing, ctx);
+        mesh->attributes = gridsToAttributes(model.attributes, mesh->points, ctx);
+    }
+    MeshFormat format{};
+    writableMeshFormatOf(path, format);
+    writeMesh(temporary, format, *mesh);
+}
+
+}  // namespace
+
+void requireOutputPaths(const std::vector<std::string>& paths) {
+    for (const std::string& path : paths) {
+        MeshFormat format{};
+        if (extensionOf(path) != "vdb" && !isHeightPath(path) && !writableMeshFormatOf(path, format))
+            throw Error(ErrorCode::InvalidOption,
+                        path +
+                            ": unknown extension; outputs are .vdb, .obj, .ply, .stl, .off, .glb, .gltf, or "
+                            ".png and .exr for heights");
+    }
+}
+
+namespace {
+
+void writeAll(const LevelSet& model, const std::vector<std::string>& paths, const ModelOutputOptions& options,
+              OutputSet& outputs, const RunContext& ctx) {
+    std::vector<std::string> temporaries;
+    for (const std::string& path : paths) temporaries.push_back(outputs.add(path));
+    std::optional<Mesh> mesh;
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+        Stage stage(ctx, "writing " + paths[i], 1);
+        writeOne(model, paths[i], temporaries[i], options, mesh, ctx);
+        stage.advance();
+    }
+}
+
+}  // namespace
+
+void validate(const ModelOutputOptions& options) {
+    MeshingOptions meshing;
+    meshing.adaptivity = options.adaptivity;
+    meshing.sharp = options.sharp;
+    validate(meshing);
+    PointOptions points;
+    points.spacing = options.spacing;
+    validate(points);
+    requireOption(options.height >= 0 && options.height < 1e30, "height", roundedText(options.height, 6),
+                  "above 0 (world), or 0 for the highest point");
+    for (const GridPtr& grid : options.extraGrids)
+        requireOption(grid != nullptr, "extraGrids", "null", "grids");
+}
+
+void writeModel(const LevelSet& model, const std::vector<std::string>& paths,
+                const ModelOutputOptions& options, OutputSet& outputs, const RunContext& ctx) {
+    requireOutputPaths(paths);
+    withThreads(ctx, [&] {
+        validate(options);
+        requireModel(&model, "the model", ctx);
+        writeAll(model, paths, options, outputs, ctx);
+    });
+}
+
+}  // namespace vdbsynth

@@ -1,0 +1,131 @@
+// The kinds that are fields: Voronoi foam, a random field's level set, a height field.
+#include "libvdbsynth/base/random.h"
+#include "libvdbsynth/math/lattice.h"
+#include "libvdbsynth/math/trigonometry.h"
+#include "libvdbsynth/procedural/kinds.h"
+#include "libvdbsynth/procedural/packing.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vdbsynth {
+namespace {
+
+constexpr std::uint32_t kWavePurpose = 0x77617665;
+constexpr int kSide = BrickField::kSide;
+
+struct Wave {
+    Vec3d vector;  // [radians / voxel]
+    double phase, amplitude;
+};
+
+Vec3d randomDirection(Random& random, bool flat) {
+    if (flat) {
+        const double angle = 2 * kPi * random.uniform();
+        return {cosine(angle), sine(angle), 0};
+    }
+    for (;;) {
+        const Vec3d v{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+        const double l = length(v);
+        if (l > 0.1 && l < 1) return v * (1 / l);
+    }
+}
+
+double sumOf(const std::vector<Wave>& waves, const Vec3d& p) {
+    double sum = 0;
+    for (const Wave& wave : waves) sum += wave.amplitude * cosine(dot(wave.vector, p) + wave.phase);
+    return sum;
+}
+
+}  // namespace
+
+// Distance to the walls of the Voronoi cells of packed seeds: within a convex cell the nearest wall is
+// that of the nearest bisector, so the distance is exact in the voids.
+BrickField foamField(const ExemplarRequest& request, const RunContext& ctx) {
+    const double f = request.feature, wall = std::max(1.2, 0.07 * f);
+    Vec3d low, high;
+    for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = request.box.min[axis] - 1.5 * f;
+        high[axis] = request.box.max[axis] + 1.5 * f;
+    }
+    const std::vector<PackedBall> seeds = packBalls(low, high, 0.42 * f, 0.5 * f, 0.5, request.seed, ctx);
+    return BrickField::generate(request.box, ctx, [&](const IndexBox& brick, float* samples) {
+        const Vec3d middle{brick.min.x + 3.5, brick.min.y + 3.5, brick.min.z + 3.5};
+        // No point is farther than 1.3 features from its seed in these packings; its cell's neighbours are
+        // within twice that.
+        std::vector<Vec3d> near;
+        for (const PackedBall& seed : seeds)
+            if (length(seed.centre - middle) < 2.7 * f + 7) near.push_back(seed.centre);
+        std::sort(near.begin(), near.end(), [&](const Vec3d& a, const Vec3d& b) {
+            return dot(a - middle, a - middle) < dot(b - middle, b - middle);
+        });
+        forEachVoxel(brick, [&](const Index3& voxel) {
+            const Vec3d p{double(voxel.x), double(voxel.y), double(voxel.z)};
+            std::size_t own = 0;
+            for (std::size_t i = 1; i < near.size(); ++i)
+                if (dot(near[i] - p, near[i] - p) < dot(near[own] - p, near[own] - p)) own = i;
+            double nearest = double(kExemplarLimit) + wall;
+            for (std::size_t i = 0; i < near.size(); ++i) {
+                if (i == own) continue;
+                const Vec3d apart = near[i] - near[own];
+                nearest = std::min(nearest, dot((near[i] + near[own]) * 0.5 - p, apart) / length(apart));
+            }
+            *samples++ = float(std::clamp(nearest - wall, -double(kExemplarLimit), double(kExemplarLimit)));
+        });
+    });
+}
+
+// A sum of 48 plane waves of about one wavelength, nearly a Gaussian field; solid
+// where it is above 0.1 sigma.
+BrickField spongeField(const ExemplarRequest& request, const RunContext& ctx) {
+    std::vector<Wave> waves;
+    constexpr int kWaves = 48;
+    for (std::uint64_t i = 0; i < kWaves; ++i) {
+        Random random(request.seed, i, kWavePurpose);
+        const Vec3d direction = randomDirection(random, false);
+        const double k = 2 * kPi / (request.feature * random.uniform(0.8, 1.25));
+        waves.push_back({direction * k, 2 * kPi * random.uniform(), std::sqrt(2.0 / kWaves)});
+    }
+    const double slope = 2 * kPi / request.feature;  // turns the field's values into voxels near its zero
+    return BrickField::fromVoxels(request.box, ctx, [&](const Index3& voxel) {
+        const Vec3d p{double(voxel.x), double(voxel.y), double(voxel.z)};
+        return float(
+            std::clamp((0.1 - sumOf(waves, p)) / slope, -double(kExemplarLimit), double(kExemplarLimit)));
+    });
+}
+
+// Five octaves of sixteen waves; each octave has half the wavelength and 0.45 of the height.
+BrickField terrainField(const ExemplarRequest& request, const RunContext& ctx) {
+    std::vector<Wave> waves;
+    constexpr int kWaves = 16, kOctaves = 5;
+    double wavelength = request.feature, height = 0.16 * request.feature;
+    for (int octave = 0; octave < kOctaves && wavelength >= 3; ++octave, wavelength /= 2, height *= 0.45)
+        for (int i = 0; i < kWaves; ++i) {
+            Random random(request.seed, std::uint64_t(octave * kWaves + i), kWavePurpose + 1);
+            const Vec3d direction = randomDirection(random, true);
+            const double k = 2 * kPi / (wavelength * random.uniform(0.75, 1.3));
+            waves.push_back({direction * k, 2 * kPi * random.uniform(), height * std::sqrt(2.0 / kWaves)});
+        }
+    const double level = request.domain.min.z + 0.5 * request.domain.size().z;
+    const int nx = request.box.size().x, ny = request.box.size().y;
+    const int wide = (nx + kSide - 1) / kSide * kSide, deep = (ny + kSide - 1) / kSide * kSide;
+    // One height per column; bricks of one column share them.
+    std::vector<double> heights(std::size_t(wide) * std::size_t(deep));
+    for (int x = 0; x < wide; ++x)
+        for (int y = 0; y < deep; ++y)
+            heights[std::size_t(x) * std::size_t(deep) + std::size_t(y)] =
+                level + sumOf(waves, {double(request.box.min.x + x), double(request.box.min.y + y), 0});
+    return BrickField::generate(request.box, ctx, [&](const IndexBox& brick, float* samples) {
+        for (int x = 0; x < kSide; ++x)
+            for (int y = 0; y < kSide; ++y) {
+                const double top =
+                    heights[std::size_t(brick.min.x - request.box.min.x + x) * std::size_t(deep) +
+                            std::size_t(brick.min.y - request.box.min.y + y)];
+                for (int z = 0; z < kSide; ++z)
+                    *samples++ = float(
+                        std::clamp(brick.min.z + z - top, -double(kExemplarLimit), double(kExemplarLimit)));
+            }
+    });
+}
+
+}  // namespace vdbsynth

@@ -1,0 +1,22 @@
+#pragma once
+#include "libvdbsynth/grid/brick_field.h"
+#include "libvdbsynth/math/vec3.h"
+
+#include <string>
+
+namespace vdbsynth {
+
+/// A field whose zero level is a surface, negative inside, without unit, and the domain it was made for. The
+/// field extends some voxels beyond the domain, where it repeats the outermost samples.
+struct RasterField {
+    BrickField field;
+    IndexBox domain;
+    double voxelSize = 1;     ///< [world]
+    Vec3d origin{0, 0, 0};    ///< [world] of voxel 0,0,0
+    std::string description;  ///< the choices made, one line
+};
+
+inline constexpr float kRasterFieldLimit = 4.f;  ///< largest value of the fields here
+inline constexpr int kRasterFieldMargin = 6;     ///< voxels by which they extend beyond the domain
+
+}  // namespace vdbsynth

@@ -1,0 +1,233 @@
+// Volumes; height fields are in height_field.cpp.
+#include "libvdbsynth/raster/volume_field.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/distance/crossing_field.h"
+#include "libvdbsynth/math/lattice.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vdbsynth {
+namespace {
+
+constexpr int kSide = BrickField::kSide;
+
+std::string rounded(double value) {
+    return roundedText(value, 6);
+}
+
+Index3 nearestSample(const Raster& raster, const Index3& p) {
+    return {std::clamp(p.x, 0, raster.size.x - 1), std::clamp(p.y, 0, raster.size.y - 1),
+            std::clamp(p.z, 0, raster.size.z - 1)};
+}
+
+// threshold - value over the box of the samples enlarged by the margin.
+BrickField thresholdField(const Raster& raster, const RasterRange& range, double threshold,
+                          const RunContext& ctx) {
+    const double most = std::max(range.maximum - threshold, threshold - range.minimum);
+    const float scale = float(0.999 * double(kRasterFieldLimit) / most);
+    return crossingField(
+        IndexBox::fromSize(raster.size).expanded(kRasterFieldMargin), kRasterFieldLimit, ctx,
+        [&](const Index3& corner, const Index3& size, float* out) {
+            forEachVoxel({corner, corner + size - Index3{1, 1, 1}}, [&](const Index3& voxel) {
+                const Index3 p = nearestSample(raster, voxel);
+                const float value = raster.at(p.x, p.y, p.z);
+                *out++ = std::isnan(value) ? kRasterFieldLimit
+                                           : float((threshold - double(value)) * double(scale));
+            });
+        });
+}
+
+// One pass of the binomial kernel 1 2 1 along each axis over a cube of kPadded, into one of kSide.
+void smoothCube(const float* from, float* out) {
+    constexpr int kPadded = kSide + 2;
+    float alongX[kSide * kPadded * kPadded], alongY[kSide * kSide * kPadded];
+    for (int i = 0; i < kSide * kPadded * kPadded; ++i)
+        alongX[i] = 0.25f * (from[i] + 2 * from[i + kPadded * kPadded] + from[i + 2 * kPadded * kPadded]);
+    for (int x = 0; x < kSide; ++x)
+        for (int i = 0; i < kSide * kPadded; ++i) {
+            const float* row = alongX + x * kPadded * kPadded + i;
+            alongY[x * kSide * kPadded + i] = 0.25f * (row[0] + 2 * row[kPadded] + row[2 * kPadded]);
+        }
+    for (int i = 0; i < kSide * kSide; ++i)
+        for (int z = 0; z < kSide; ++z) {
+            const float* row = alongY + i * kPadded + z;
+            *out++ = 0.25f * (row[0] + 2 * row[1] + row[2]);
+        }
+}
+
+// Another field smoothed once: fill(values, smoothed) for every brick that is not constant with its
+// neighbours; values are those of a cube of kPadded, smoothed those of the brick, which fill may change.
+template <typename Change>
+BrickField smoothedField(const BrickField& field, const RunContext& ctx, Change&& change) {
+    constexpr int kPadded = kSide + 2;
+    return BrickField::generate(field.box(), ctx, [&](const IndexBox& brick, float* samples) {
+        float constant = 0, padded[kPadded * kPadded * kPadded];
+        if (field.constantIn(brick.expanded(1), constant)) {
+            std::fill_n(samples, BrickField::kSamples, constant);
+            return;
+        }
+        field.readBox(brick.min - Index3{1, 1, 1}, {kPadded, kPadded, kPadded}, padded);
+        smoothCube(padded, samples);
+        const Index3 corner = brick.min - Index3{1, 1, 1}, size{kPadded, kPadded, kPadded};
+        forEachVoxel(brick, [&](const Index3& p) {
+            *samples = change(p, padded[latticeIndex(p - corner, size)], *samples);
+            ++samples;
+        });
+    });
+}
+
+// A field of -1/2 and 1/2 smoothed in some passes; after each, every sample is reset to its sign. A
+// sample whose sign the first pass would change belongs to a thin part or a corner: it keeps that
+// distance from the surface.
+BrickField smoothedSides(const BrickField& sides, const RunContext& ctx) {
+    constexpr int kPasses = 4;
+    constexpr float kLeast = 0.04f, kMostThin = 0.45f;
+    const auto beyond = [](float side, float value) {
+        return (side < 0) == (value < 0) ? 0.f : std::abs(value);
+    };
+    // Unsmoothed samples hold 1/2, which no thin part reaches: 3/8 is that of a single sample.
+    const BrickField thin = smoothedField(
+        sides, ctx, [&](const Index3&, float side, float value) { return beyond(side, value); });
+    BrickField field = sides;
+    for (int pass = 0; pass < kPasses; ++pass)
+        field = smoothedField(field, ctx, [&](const Index3& p, float side, float value) {
+            const float own = std::abs(thin.at(p)), least = std::max(kLeast, own < kMostThin ? own : 0.f);
+            return beyond(side, value) == 0 && std::abs(value) >= least ? value : std::copysign(least, side);
+        });
+    return field;
+}
+
+bool isOneOf(const std::vector<LabelRange>& labels, float value) {
+    for (const auto& [low, high] : labels)
+        if (double(value) >= low && double(value) <= high) return true;
+    return false;
+}
+
+// The field of the samples with one of some labels.
+BrickField labelField(const std::string& name, const Raster& raster, const RasterRange& range,
+                      const std::vector<LabelRange>& labels, const RunContext& ctx) {
+    if (range.maximum > 16777215 || range.minimum < -16777215)
+        throw Error(ErrorCode::Unusable, name + ": its values go up to " + rounded(range.maximum) +
+                                             "; labels over 16777215 cannot be distinguished; renumber them");
+    if (std::none_of(raster.values.begin(), raster.values.end(),
+                     [&](float value) { return isOneOf(labels, value); }))
+        throw Error(ErrorCode::Unusable, "`labels`: no sample of " + name +
+                                             " has one of them; its values range from " +
+                                             rounded(range.minimum) + " to " + rounded(range.maximum));
+    const IndexBox box = IndexBox::fromSize(raster.size).expanded(kRasterFieldMargin);
+    const BrickField smooth = smoothedSides(
+        BrickField::fromVoxels(box, ctx,
+                               [&](const Index3& voxel) {
+                                   const Index3 p = nearestSample(raster, voxel);
+                                   return isOneOf(labels, raster.at(p.x, p.y, p.z)) ? -0.5f : 0.5f;
+                               }),
+        ctx);
+    return crossingField(
+        box, kRasterFieldLimit, ctx,
+        [&](const Index3& corner, const Index3& size, float* out) { smooth.readBox(corner, size, out); });
+}
+
+// A field on cells of one shape, resampled to cubes: trilinear between samples, `ratio` samples per voxel
+// along each axis.
+BrickField onCubes(const BrickField& field, const IndexBox& domain, const Vec3d& ratio,
+                   const RunContext& ctx) {
+    return crossingField(domain.expanded(kRasterFieldMargin), kRasterFieldLimit, ctx,
+                         [&](const Index3& corner, const Index3& size, float* out) {
+                             forEachVoxel({corner, corner + size - Index3{1, 1, 1}}, [&](const Index3& p) {
+                                 Index3 base;
+                                 double t[3];
+                                 for (int axis = 0; axis < 3; ++axis) {
+                                     const double at = p[axis] * ratio[axis];
+                                     base[axis] = int(std::floor(at));
+                                     t[axis] = at - base[axis];
+                                 }
+                                 double sum = 0;
+                                 for (int i = 0; i < 8; ++i) {
+                                     const Index3 d{i >> 2, i >> 1 & 1, i & 1};
+                                     const double weight = (d.x ? t[0] : 1 - t[0]) * (d.y ? t[1] : 1 - t[1]) *
+                                                           (d.z ? t[2] : 1 - t[2]);
+                                     if (weight > 0) sum += weight * double(field.at(base + d));
+                                 }
+                                 *out++ = float(sum);
+                             });
+                         });
+}
+
+std::vector<LabelRange> chooseLabels(const std::string& name, const RasterRange& range,
+                                     const VolumeOptions& options, std::string& description) {
+    if (!options.labels.empty()) return options.labels;
+    if (range.distinct.size() == 2) {
+        description = "two values, of which " + rounded(range.maximum) + " is solid; `labels` changes that";
+        return {{range.maximum, range.maximum}};
+    }
+    throw Error(ErrorCode::Unusable,
+                name +
+                    ": choose what is solid with `threshold` VALUE or `labels` LIST; its values range from " +
+                    rounded(range.minimum) + " to " + rounded(range.maximum));
+}
+
+}  // namespace
+
+void validate(const VolumeOptions& options) {
+    if (options.threshold && !options.labels.empty())
+        throw Error(ErrorCode::InvalidOption, "`threshold` and `labels`: give one of them");
+    requireOption(!options.threshold || std::isfinite(*options.threshold), "threshold",
+                  options.threshold ? exactText(*options.threshold) : "", "a number");
+    for (const LabelRange& range : options.labels)
+        requireOption(range.first <= range.second, "labels",
+                      exactText(range.first) + ".." + exactText(range.second),
+                      "a smaller and a larger value");
+    requireOption(options.pixelSize >= 0 && options.pixelSize < 1e30, "pixelSize",
+                  roundedText(options.pixelSize, 6), "above 0 (world), or 0 for the file's");
+}
+
+RasterField volumeField(const std::string& name, const Raster& given, const VolumeOptions& options,
+                        const RunContext& ctx) {
+    validate(options);
+    requireMemory(ctx, double(given.sampleCount()) * 12, name, "crop or shrink it first");
+    Stage stage(ctx, "volume to field", 1);
+    const Raster colourless = given.channels == 1 ? Raster() : luminance(given);
+    const Raster& raster = given.channels == 1 ? given : colourless;
+    const RasterRange range = rangeOf(raster);
+    if (range.infinite > 0)
+        throw Error(ErrorCode::BadData,
+                    name + ": " + std::to_string(range.infinite) + " values are infinite");
+    if (range.missing == raster.values.size()) throw Error(ErrorCode::EmptyInput, name + ": has no data");
+    RasterField result;
+    if (options.threshold) {
+        const double t = *options.threshold;
+        if (!(t >= range.minimum && t < range.maximum))
+            throw Error(ErrorCode::Unusable,
+                        "`threshold` " + rounded(t) + ": no surface there; the values of " + name +
+                            " range from " + rounded(range.minimum) + " to " + rounded(range.maximum));
+        result.field = thresholdField(raster, range, t, ctx);
+    } else {
+        result.field =
+            labelField(name, raster, range, chooseLabels(name, range, options, result.description), ctx);
+    }
+    const double smallest = std::min({raster.spacing.x, raster.spacing.y, raster.spacing.z});
+    result.voxelSize = options.pixelSize > 0 ? options.pixelSize : smallest;
+    result.origin = options.pixelSize > 0 ? Vec3d{0, 0, 0} : raster.origin;
+    result.domain = IndexBox::fromSize(raster.size);
+    const Vec3d ratio{smallest / raster.spacing.x, smallest / raster.spacing.y, smallest / raster.spacing.z};
+    if (std::min({ratio.x, ratio.y, ratio.z}) < 1 - 1e-6) {
+        for (int axis = 0; axis < 3; ++axis)
+            if (!(raster.size[axis] / ratio[axis] < 1e8))
+                throw Error(ErrorCode::Unusable, name + ": its cells are " + rounded(1 / ratio[axis]) +
+                                                     " times as long as wide; resample it first");
+        for (int axis = 0; axis < 3; ++axis)
+            result.domain.max[axis] = std::max(0, int(std::lround((raster.size[axis] - 1) / ratio[axis])));
+        requireMemory(ctx, double(result.domain.volume()) * 8, name + " resampled to cubes",
+                      "resample it to larger ones first");
+        result.field = onCubes(result.field, result.domain, ratio, ctx);
+        result.description += std::string(result.description.empty() ? "" : "; ") +
+                              "its cells are not cubes: resampled to their smallest side";
+    }
+    stage.advance();
+    return result;
+}
+
+}  // namespace vdbsynth

@@ -1,0 +1,140 @@
+#include "libvdbsynth/vdb/control_grids.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/math/lattice.h"
+#include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/grid_reader.h"
+
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace vdbsynth {
+namespace {
+
+GridReader rotationReader(const openvdb::GridBase& grid) {
+    if (GridReader vectors = vectorReader(grid, GridSampling::Nearest)) return vectors;
+    return scalarReader(grid, GridSampling::Nearest, "`rotationMap`");
+}
+
+// From a frame's voxels to the world.
+using Place = std::function<Vec3d(const Index3& voxel)>;
+
+Place placesOf(const ControlFrame& frame) {
+    return [frame, transform = frame.like->transformPtr()](Index3 voxel) {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (!frame.tiles[std::size_t(axis)]) continue;
+            const int period = frame.period.size()[axis], from = voxel[axis] - frame.period.min[axis];
+            voxel[axis] = frame.period.min[axis] + (from % period + period) % period;
+        }
+        return fromVec(transform->indexToWorld(openvdb::Vec3d(voxel.x, voxel.y, voxel.z)));
+    };
+}
+
+[[noreturn]] void refuse(const char* option, double value, const Index3& voxel, const std::string& range) {
+    throw Error(ErrorCode::Unusable, std::string("`") + option + "`: " + std::to_string(value) +
+                                         " at voxel " + std::to_string(voxel.x) + "," +
+                                         std::to_string(voxel.y) + "," + std::to_string(voxel.z) +
+                                         " of the result; give " + range);
+}
+
+// Any of the readers may be empty.
+struct Readers {
+    GridReader exemplarNumber, rotationVector, scale;
+    bool insideIsSecond = false;
+    int exemplars = 1;
+
+    WantedVariant at(const Vec3d& world, const Index3& voxel) const {
+        WantedVariant want;
+        if (exemplarNumber) {
+            const double value = exemplarNumber(world).value.z;
+            const double number = insideIsSecond ? (value < 0 ? 1 : 0) : std::round(value);
+            if (!(number >= 0 && number < exemplars))
+                refuse("exemplarMap", value, voxel,
+                       "numbers of exemplars, 0 to " + std::to_string(exemplars - 1));
+            want.exemplar = std::int32_t(number);
+        }
+        if (rotationVector) {
+            want.rotation = rotationVector(world).value;
+            const double angle = length(want.rotation);
+            if (!(angle <= 100)) refuse("rotationMap", angle, voxel, "angles up to 100 radians");
+        }
+        if (scale) {
+            const GridReading reading = scale(world);
+            want.scale = !reading.active && reading.value.z == 0 ? 1 : reading.value.z;
+            if (!(want.scale >= 0.25 && want.scale <= 4))
+                refuse("scaleMap", want.scale, voxel, "scales from 0.25 to 4");
+        }
+        return want;
+    }
+};
+
+}  // namespace
+
+GridConstPtr asControl(const FloatGridConstPtr& grid) {
+    return grid;
+}
+
+BrickField sampledScalar(const openvdb::GridBase& grid, const ControlFrame& frame, const std::string& what,
+                         const RunContext& ctx) {
+    scalarReader(grid, GridSampling::Linear,
+                 what);  // a grid of a wrong kind is refused here, not in a worker
+    const Place worldOf = placesOf(frame);
+    return BrickField::generate(IndexBox::fromSize(frame.box.size()), ctx,
+                                [&](const IndexBox& brick, float* samples) {
+                                    const GridReader reader = scalarReader(grid, GridSampling::Linear, what);
+                                    forEachVoxel(brick, [&](const Index3& p) {
+                                        *samples++ = float(reader(worldOf(frame.box.min + p)).value.z);
+                                    });
+                                });
+}
+
+BrickField sampledWeight(const openvdb::GridBase& grid, const ControlFrame& frame, float strength,
+                         const std::string& what, const RunContext& ctx) {
+    constexpr float kFade = 3;  // [voxels]
+    const bool solid = grid.getGridClass() == openvdb::GRID_LEVEL_SET;
+    const float border = kFade * float(frame.like->voxelSize()[0]);
+    const BrickField scalar = sampledScalar(grid, frame, what, ctx);
+    return BrickField::generate(scalar.box(), ctx, [&](const IndexBox& brick, float* samples) {
+        scalar.readBox(brick.min, brick.size(), samples);
+        for (int i = 0; i < BrickField::kSamples; ++i) {
+            const float value = solid ? 0.5f - samples[i] / (2 * border) : samples[i];
+            samples[i] = strength * std::clamp(value, 0.f, 1.f);
+        }
+    });
+}
+
+std::vector<WantedVariant> wantedVariants(const openvdb::GridBase* exemplarMap,
+                                          const openvdb::GridBase* rotation, const openvdb::GridBase* scale,
+                                          int exemplars, const ControlFrame& frame, const RunContext& ctx) {
+    const auto readers = [&] {
+        Readers made;
+        if (exemplarMap)
+            made.exemplarNumber = scalarReader(*exemplarMap, GridSampling::Nearest, "`exemplarMap`");
+        if (rotation) made.rotationVector = rotationReader(*rotation);
+        if (scale) made.scale = scalarReader(*scale, GridSampling::Nearest, "`scaleMap`");
+        made.insideIsSecond = exemplarMap && exemplarMap->getGridClass() == openvdb::GRID_LEVEL_SET;
+        made.exemplars = exemplars;
+        return made;
+    };
+    readers();  // grids of a wrong kind are refused here, not in a worker
+    const Place worldOf = placesOf(frame);
+    const Index3 cells = variantCells(frame.box);
+    std::vector<WantedVariant> wanted(latticeCount(cells));
+    parallelFor(ctx, wanted.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        const Readers own = readers();
+        for (std::size_t i = begin; i < end; ++i) {
+            Index3 voxel = latticeVoxel(i, cells);
+            for (int axis = 0; axis < 3; ++axis)
+                voxel[axis] = std::min(frame.box.min[axis] + voxel[axis] * kVariantCell + kVariantCell / 2,
+                                       frame.box.max[axis]);
+            wanted[i] = own.at(worldOf(voxel), voxel);
+        }
+    });
+    return wanted;
+}
+
+}  // namespace vdbsynth

@@ -1,0 +1,46 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/grid/brick_field.h"
+#include "libvdbsynth/map/exemplar_variant.h"
+#include "libvdbsynth/vdb/vdb_fwd.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace vdbsynth {
+
+/// Where the samples of a control are: an index box of a model; positions along axes that tile
+/// are wrapped into `period`.
+struct ControlFrame {
+    IndexBox box, period;
+    std::array<bool, 3> tiles{};
+    const openvdb::FloatGrid* like = nullptr;  ///< the grid whose voxels the boxes are in
+};
+
+/// A scalar grid of any type, sampled at every voxel of a frame: trilinear between voxels (integers and
+/// booleans: nearest); booleans are 0 and 1. Positions are in world space.
+/// @param what  the option, for messages   @throw Error BadData (not a scalar grid)
+BrickField sampledScalar(const openvdb::GridBase& grid, const ControlFrame& frame, const std::string& what,
+                         const RunContext& ctx = {});
+
+/// A weight at every voxel of a frame: `strength` times a scalar grid's value clamped to 0..1; a level set is
+/// 1 inside and fades to 0 over three voxels around its surface. @throw Error as sampledScalar
+BrickField sampledWeight(const openvdb::GridBase& grid, const ControlFrame& frame, float strength,
+                         const std::string& what, const RunContext& ctx = {});
+
+/// A level set's grid as a control, for callers without OpenVDB's headers.
+GridConstPtr asControl(const FloatGridConstPtr& grid);
+
+/// What control grids ask for at every place of a frame (variantCells), x slowest. A level set among the
+/// numbers of exemplars means the second inside and the first outside.
+/// @param exemplarMap  numbers of exemplars, 0 to exemplars - 1, or null: 0 everywhere
+/// @param rotation  rotation vectors, or angles about z [radians], or null
+/// @param scale     0.25 to 4, or null; inactive zeros mean 1
+/// @throw Error BadData (a grid of another kind), Unusable (a value out of range, with its position)
+std::vector<WantedVariant> wantedVariants(const openvdb::GridBase* exemplarMap,
+                                          const openvdb::GridBase* rotation, const openvdb::GridBase* scale,
+                                          int exemplars, const ControlFrame& frame,
+                                          const RunContext& ctx = {});
+
+}  // namespace vdbsynth

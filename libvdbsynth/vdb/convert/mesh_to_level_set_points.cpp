@@ -1,0 +1,55 @@
+// Solids from oriented points.
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/distance/point_field.h"
+#include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
+#include "libvdbsynth/vdb/convert/mesh_to_level_set_steps.h"
+
+#include <cmath>
+#include <string>
+
+namespace vdbsynth {
+FloatGridPtr pointsToSolid(const PointCloud& cloud, double voxelSize, double halfWidth,
+                           const std::string& name, const SolidOptions& options, const RunContext& ctx) {
+    requireOption(std::isfinite(voxelSize) && voxelSize > 0, "voxelSize", std::to_string(voxelSize),
+                  "above 0");
+    requireOption(halfWidth >= 1.5 && halfWidth <= 1000, "halfWidth", std::to_string(halfWidth),
+                  "from 1.5 to 1000 voxels");
+    validate(options);
+    const bool shell = options.open == OpenMesh::Shell;
+    requireOption(!shell || (std::isfinite(options.thickness) && options.thickness >= voxelSize), "thickness",
+                  std::to_string(options.thickness),
+                  "at least a voxel, which is " + std::to_string(voxelSize));
+    PointCloud index = cloud;
+    const std::size_t outliers = dropOutliers(index, ctx);
+    if (outliers > 0)
+        message(ctx, MessageLevel::Warning,
+                name + ": " + std::to_string(outliers) + " outliers of " +
+                    std::to_string(cloud.points.size()) + " points left out");
+    if (index.points.size() < 8)
+        throw Error(ErrorCode::Unusable, name + ": " + std::to_string(index.points.size()) +
+                                             " distinct points are too few for a surface; 8 are needed");
+    if (index.normals.empty()) {
+        message(ctx, MessageLevel::Note, name + ": no normals; estimated and oriented consistently");
+        estimateNormals(index, ctx);
+    }
+    for (Vec3f& p : index.points) p = cast<float>(cast<double>(p) * (1 / voxelSize));
+    double area = 0;
+    for (float spacing : pointSpacing(index, ctx)) area += double(spacing) * double(spacing);
+    requireMemory(ctx, area * 2 * halfWidth * 60,
+                  name + ": a level set at voxel size " + std::to_string(voxelSize),
+                  "use a larger `voxelSize` or a smaller `resolution`");
+    Stage stage(ctx, "points to level set", 1);
+    PointFieldOptions fieldOptions;
+    if (shell) fieldOptions.thickness = float(options.thickness / voxelSize);
+    fieldOptions.limit = kHalfWidth;
+    const PointSolid solid = pointField(index, fieldOptions, ctx);
+    if (solid.solidShare < 0.5)
+        message(ctx, MessageLevel::Warning,
+                name + ": " + std::to_string(int(100 * (1 - solid.solidShare))) +
+                    " % of the points enclose nothing, as in a scan from one side; make a shell with `open` "
+                    "shell and a `thickness`");
+    stage.advance();
+    return levelSetOf(solid.field, voxelSize, float(halfWidth), name, ctx);
+}
+
+}  // namespace vdbsynth

@@ -1,0 +1,24 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/geometry/mesh.h"
+#include "libvdbsynth/grid/brick_field.h"
+#include "libvdbsynth/vdb/vdb_fwd.h"
+
+#include <string>
+
+namespace vdbsynth {
+
+// Steps of meshToSolid; for the .cpp files of mesh_to_level_set only.
+
+/// A field around faces in index space, negative inside by the winding number, its values distances [voxels]
+/// near the faces; its zero level also closes openings.
+/// @throw Error Unusable (most of its area encloses nothing: a sheet)
+BrickField soupToField(const Mesh& indexMesh, const std::string& name, const RunContext& ctx = {});
+/// The same for a sheet of a thickness [voxels].
+BrickField sheetToField(const Mesh& indexMesh, double thickness, const RunContext& ctx = {});
+
+/// A field in index space, of which only the zero level is meant, as a level set.
+FloatGridPtr levelSetOf(const BrickField& field, double voxelSize, float halfWidth, const std::string& name,
+                        const RunContext& ctx = {});
+
+}  // namespace vdbsynth

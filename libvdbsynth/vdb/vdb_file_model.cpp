@@ -1,0 +1,224 @@
+// Which grid of a VDB file is the model, and its conversion to a level set.
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/redistance.h"
+#include "libvdbsynth/vdb/vdb_file.h"
+#include "libvdbsynth/vdb/wall.h"
+
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/LevelSetRebuild.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vdbsynth {
+namespace {
+
+bool isLevelSet(const openvdb::FloatGrid& grid) {
+    if (grid.getGridClass() == openvdb::GRID_LEVEL_SET) return true;
+    if (grid.getGridClass() != openvdb::GRID_UNKNOWN || grid.background() <= 0) return false;
+    const ValueRange range = rangeOf(grid);
+    return range.minimum < 0 && range.maximum > 0;
+}
+
+// The grid itself, for any scalar type.
+GridPtr pickGrid(const std::string& path, const std::vector<GridPtr>& grids, const VdbReadOptions& options) {
+    requireGrids(grids);
+    std::string names;
+    GridPtr levelSet, fog;
+    for (const GridPtr& grid : grids) {
+        names += (names.empty() ? "" : ", ") + grid->getName() + " (" + grid->valueType() + ")";
+        const openvdb::FloatGrid::Ptr floats = asFloat(grid);
+        if (!options.gridName.empty() && grid->getName() == options.gridName) {
+            if (!floats)
+                throw Error(ErrorCode::BadData, path + ": grid \"" + options.gridName + "\" holds " +
+                                                    grid->valueType() + "; a float or double grid is needed");
+            return grid;
+        }
+        if (!floats) continue;
+        if (isLevelSet(*floats)) {
+            if (!levelSet || (grid->getName() == kSurfaceName && levelSet->getName() != kSurfaceName))
+                levelSet = grid;
+        } else if (!fog) {
+            fog = grid;
+        }
+    }
+    if (!options.gridName.empty())
+        throw Error(ErrorCode::BadData, "`grid` " + options.gridName + ": not in " + path + ", which has " +
+                                            (names.empty() ? "no grids" : names));
+    if (options.iso && fog) return fog;
+    if (levelSet) return levelSet;
+    if (fog) return fog;
+    throw Error(ErrorCode::BadData, path + ": no usable grid; a float or double grid is needed, it has " +
+                                        (names.empty() ? "no grids" : names));
+}
+
+void refuseUnusable(const std::string& path, const openvdb::FloatGrid& grid) {
+    if (!grid.transform().isLinear())
+        throw Error(ErrorCode::BadData, path + ": grid \"" + grid.getName() +
+                                            "\" has a frustum transform; resample it to uniform voxels");
+    if (grid.activeVoxelCount() == 0)
+        throw Error(ErrorCode::EmptyInput, path + ": grid \"" + grid.getName() + "\" has no active voxels");
+    if (!rangeOf(grid).finite)
+        throw Error(ErrorCode::BadData,
+                    path + ": grid \"" + grid.getName() + "\" holds NaN or infinite values");
+    // OpenVDB throws for some singular transforms.
+    const openvdb::Mat4d m =
+        behindWall(ErrorCode::BadData, path + ": grid \"" + grid.getName() + "\" has a bad transform",
+                   [&] { return grid.transform().baseMap()->getAffineMap()->getMat4(); });
+    for (int i = 0; i < 16; ++i)
+        if (!std::isfinite(m.asPointer()[i]))
+            throw Error(ErrorCode::BadData, path + ": grid \"" + grid.getName() +
+                                                "\" has a transform with NaN or infinite values");
+    if (std::abs(m.det()) < 1e-300)
+        throw Error(ErrorCode::BadData, path + ": grid \"" + grid.getName() + "\" has a singular transform");
+}
+
+// Rotation, reflection and uniform scale keep distances; nothing else does.
+bool keepsDistances(const openvdb::FloatGrid& grid) {
+    const openvdb::Mat4d m = grid.transform().baseMap()->getAffineMap()->getMat4();
+    const openvdb::Mat3d linear = m.getMat3();
+    const openvdb::Mat3d product = linear * linear.transpose();
+    const double s = product(0, 0);
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            if (std::abs(product(i, j) - (i == j ? s : 0)) > 1e-6 * s) return false;
+    return true;
+}
+
+// The zero level in the voxels of another transform, by OpenVDB.
+openvdb::FloatGrid::Ptr rebuiltBy(const openvdb::FloatGrid& grid, const openvdb::math::Transform& transform,
+                                  const std::string& what, const RunContext& ctx) {
+    return withThreads(ctx, [&] {
+        return behindWall(ErrorCode::Unusable, what, [&] {
+            return openvdb::tools::levelSetRebuild(grid, 0.f, kHalfWidth, kHalfWidth, &transform);
+        });
+    });
+}
+
+// Negative where a fog is denser than `iso`.
+openvdb::FloatGrid::Ptr insideOut(const openvdb::FloatGrid& fog, double iso) {
+    openvdb::FloatGrid::Ptr field = fog.deepCopy();
+    for (auto it = field->beginValueAll(); it; ++it) it.setValue(float(iso) - *it);
+    field->tree().root().setBackground(float(iso) - fog.background(), /* updateChildNodes= */ false);
+    return field;
+}
+
+openvdb::FloatGrid::Ptr fogToLevelSet(const std::string& path, const openvdb::FloatGrid& fog, double iso,
+                                      const RunContext& ctx) {
+    const ValueRange range = rangeOf(fog);
+    if (iso <= std::min(range.minimum, double(fog.background())) || iso >= range.maximum)
+        throw Error(ErrorCode::Unusable,
+                    "`iso` " + std::to_string(iso) + ": no surface there; the values of \"" + fog.getName() +
+                        "\" in " + path + " range from " +
+                        std::to_string(std::min(range.minimum, double(fog.background()))) + " to " +
+                        std::to_string(range.maximum));
+    return rebuildLevelSet(*insideOut(fog, iso), kHalfWidth, path + ": `iso`", ctx);
+}
+
+}  // namespace
+
+void validate(const VdbReadOptions& options) {
+    requireOption(!options.iso || std::isfinite(*options.iso), "iso",
+                  options.iso ? exactText(*options.iso) : "", "a number");
+}
+
+GridPtr pickedGrid(const std::string& path, const std::vector<GridPtr>& grids,
+                   const VdbReadOptions& options) {
+    return pickGrid(path, grids, options);
+}
+
+FloatGridPtr readVdbFloatGrid(const std::string& path, const std::string& name, const RunContext& ctx) {
+    VdbReadOptions options;
+    options.gridName = name;
+    const openvdb::FloatGrid::Ptr grid = asFloat(pickGrid(path, readVdbGrids(path, ctx), options));
+    refuseUnusable(path, *grid);
+    return grid;
+}
+
+LevelSet readVdbModel(const std::string& path, const VdbReadOptions& options, const RunContext& ctx) {
+    return modelFromGrids(path, readVdbGrids(path, ctx), options, ctx);
+}
+
+LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& grids,
+                        const VdbReadOptions& options, const RunContext& ctx) {
+    validate(options);
+    for (const GridPtr& grid : grids)
+        if (!grid) throw Error(ErrorCode::InvalidOption, path + ": one of the `grids` is null");
+    const openvdb::FloatGrid::Ptr given = asFloat(pickGrid(path, grids, options));
+    refuseUnusable(path, *given);
+    // A separate name, metadata and transform; the tree is the caller's and does not change.
+    openvdb::FloatGrid::Ptr grid = given->copy();
+    LevelSet model;
+    std::string domainText;
+    if (const auto meta = grid->getMetadata<openvdb::StringMetadata>(kDomainKey)) domainText = meta->value();
+    model.domainRecorded = parseBox(domainText, model.domain);
+    if (!domainText.empty() && !model.domainRecorded)
+        message(ctx, MessageLevel::Warning,
+                path + ": metadata " + kDomainKey + " \"" + domainText + "\" is not i,j,k,I,J,K; ignored");
+    const bool asFog =
+        !isLevelSet(*grid) || (options.iso && grid->getGridClass() == openvdb::GRID_FOG_VOLUME);
+    if (asFog && !options.iso)
+        throw Error(
+            ErrorCode::Unusable,
+            path + ": grid \"" + grid->getName() + "\" is a " +
+                (grid->getGridClass() == openvdb::GRID_FOG_VOLUME ? "fog volume" : "plain scalar grid") +
+                ", not a level set; set the value of its surface with `iso` VALUE (its values range from " +
+                std::to_string(rangeOf(*grid).minimum) + " to " + std::to_string(rangeOf(*grid).maximum) +
+                ")");
+    if (!keepsDistances(*grid)) {
+        const Vec3d size = fromVec(grid->voxelSize());
+        const double smallest = std::min({size.x, size.y, size.z});
+        message(ctx, MessageLevel::Note,
+                path + ": voxels are not cubes; resampled to " + std::to_string(smallest));
+        const auto transform = openvdb::math::Transform::createLinearTransform(smallest);
+        if (asFog) grid = insideOut(*grid, *options.iso);
+        grid = rebuiltBy(*grid, *transform, path, ctx);
+        model.domainRecorded = false;
+    } else if (asFog) {
+        grid = fogToLevelSet(path, *grid, *options.iso, ctx);
+    }
+    const double halfWidth = halfWidthOf(*grid);
+    if (!(halfWidth >= 1.5))
+        throw Error(ErrorCode::Unusable,
+                    path + ": its band of " + std::to_string(halfWidth) +
+                        " voxels a side is under 1.5; rebuild the level set with a wider band");
+    model.grid = grid;
+    if (!model.domainRecorded) model.domain = solidBox(*grid, path);
+    stampLevelSet(model);
+    return model;
+}
+
+LevelSet resampled(const LevelSet& model, double voxelSize, const RunContext& ctx) {
+    requireModel(&model, "the model", ctx);
+    requireOption(voxelSize > 0 && voxelSize < 1e30, "voxelSize", roundedText(voxelSize, 6),
+                  "above 0 (world)");
+    const double ratio = voxelSizeOf(*model.grid) / voxelSize;
+    requireOption(ratio < 1e4 && ratio > 1e-6, "voxelSize", roundedText(voxelSize, 6),
+                  "from 1/10000 to 1000000 times the model's voxel size");
+    requireMemory(ctx, double(model.grid->activeVoxelCount()) * ratio * ratio * 40,
+                  "voxels of " + std::to_string(voxelSize), "use larger ones");
+    Stage stage(ctx, "resampling", 1);
+    LevelSet result;
+    // Scaled in index space: the transform keeps its rotation and origin.
+    const openvdb::math::Transform::Ptr transform = model.grid->transform().copy();
+    transform->preScale(1 / ratio);
+    result.grid = rebuiltBy(*model.grid, *transform, "resampling", ctx);
+    throwIfCancelled(ctx);
+    result.domain = solidBox(*result.grid, "the model in voxels of " + std::to_string(voxelSize));
+    if (model.domainRecorded) {
+        for (int axis = 0; axis < 3; ++axis) {
+            result.domain.min[axis] = int(std::lround((model.domain.min[axis] - 0.5) * ratio + 0.5));
+            result.domain.max[axis] = std::max(
+                result.domain.min[axis], int(std::lround((model.domain.max[axis] + 0.5) * ratio - 0.5)));
+        }
+        result.domainRecorded = true;
+    }
+    stampLevelSet(result);
+    stage.advance();
+    return result;
+}
+
+}  // namespace vdbsynth

@@ -68,20 +68,6 @@ TEST_CASE("ReducedFeatures: the two parts together are the projection, and the d
     CHECK(out[7] == Approx(-2.5));
 }
 
-TEST_CASE("DepthClasses: open where depths near by do not agree", "[analogy]") {
-    DepthClasses depths(2);
-    for (int d = -10; d <= 10; ++d) {
-        // A shell three voxels thick with a rough outside: full from -4 to -2, mixed at -1 to 0, else empty.
-        depths.add(float(d), d < -4 ? 3.f : d < -1 ? -2.f : d > 0 ? 2.f : 0.f);
-    }
-    depths.finish();
-    for (int d : {-9, -8, 3, 4, 10, 300}) CHECK_FALSE(depths.open(float(d)));
-    for (int d : {-6, -5, -4, -3, -2, -1, 0, 1, 2}) CHECK(depths.open(float(d)));
-    CHECK_FALSE(depths.full(-8));
-    CHECK_FALSE(depths.full(-300));  // beyond what was seen: as the deepest seen
-    CHECK_FALSE(depths.full(5));
-}
-
 TEST_CASE("Features: bent along a ball they are those of a plane, straight ones are not",
           "[analogy][property]") {
     constexpr double kRadius = 8;

@@ -162,32 +162,8 @@ TEST_CASE("usefulLevels: thin things hold fewer", "[analogy]") {
     CHECK(usefulLevels({{plain, needles, &frames, plain->box()}}) < 3);
 }
 
-TEST_CASE("analogyVoxels: bends are those of the surface through a voxel", "[analogy]") {
-    const auto bends = [](std::shared_ptr<const BrickField> field, const Vec3f& along, int level) {
-        const FrameField frames = framesAlong(field, along);
-        const BrickField coarse = analogyPyramid(*field, level + 1, {}).distance.back();
-        return analogyVoxels(VoxelTable::where(coarse, [](float d) { return d > -0.5f && d < 0.5f; }, {}),
-                             frames, level, true, true, {});
-    };
-    for (int level : {0, 1}) {
-        const float expected = float(1 << level) / 15;  // per voxel of the level
-        for (const Bend& bend : bends(test::sphereField(48, 15), {0, 0, 1}, level).bend) {
-            CHECK(bend.tt == Approx(expected).margin(0.02f));
-            CHECK(bend.bb == Approx(expected).margin(0.02f));
-            CHECK(bend.tb == Approx(0).margin(0.02f));
-        }
-    }
-    // Along a cylinder nothing bends, around it all does.
-    const AnalogyVoxels along = bends(test::cylinderField(48, 10), {0, 0, 1}, 0);
-    REQUIRE(along.bend.size() > 100);
-    for (std::size_t i = 0; i < along.bend.size(); ++i) {
-        if (along.table[i].z < 8 || along.table[i].z > 40) continue;
-        CHECK(along.bend[i].tt == Approx(0).margin(0.02f));
-        CHECK(along.bend[i].bb == Approx(0.1f).margin(0.03f));
-    }
-}
-
-TEST_CASE("makeAnalogy: bent neighbourhoods, same bits for any number of threads", "[analogy][determinism]") {
+TEST_CASE("makeAnalogy: curvature-adapted neighbourhoods, same bits for any number of threads",
+          "[analogy][determinism]") {
     // On balls: on a plane nothing bends.
     const auto plain = test::sphereField(48, 14), target = test::sphereField(44, 11);
     const auto textured = test::shapeField({48, 48, 48}, [](const Vec3d& p) {
@@ -195,8 +171,8 @@ TEST_CASE("makeAnalogy: bent neighbourhoods, same bits for any number of threads
                1.5 * (1 + std::cos(2 * 3.14159265358979 * p.z / 8));
     });
     const Setting s{plain, textured, target, framesAlong(plain, {0, 0, 1}), framesAlong(target, {0, 0, 1})};
-    VolumeAnalogyOptions bent = levels(1), straight = levels(1);
-    bent.curvatureAdapted = true;
+    VolumeAnalogyOptions adapted = levels(1), straight = levels(1);
+    adapted.curvatureAdapted = true;
     straight.curvatureAdapted = false;
     RunContext one, three;
     one.threads = 1;
@@ -205,7 +181,7 @@ TEST_CASE("makeAnalogy: bent neighbourhoods, same bits for any number of threads
         return test::samplesOf(
             read(makeAnalogy({s.pair()}, *s.target, s.targetFrames, options, ctx), s.textured, *s.target));
     };
-    const std::vector<float> once = made(bent, one);
-    CHECK(once == made(bent, three));
+    const std::vector<float> once = made(adapted, one);
+    CHECK(once == made(adapted, three));
     CHECK(once != made(straight, one));
 }

@@ -9,8 +9,9 @@
 #include "libvdbsynth/analogy/volume_analogy_steps.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/base/random.h"
-#include "libvdbsynth/pipeline/analogy_steps.h"
-#include "libvdbsynth/pipeline/make.h"
+#include "libvdbsynth/pipeline/analogy/analogy_steps.h"
+#include "libvdbsynth/pipeline/make/make.h"
+#include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 
 #include <algorithm>
@@ -46,8 +47,8 @@ std::vector<float> featuresOf(const FeatureShape& shape, const AnalogyVoxels& vo
         for (std::size_t i = begin; i < end; ++i) {
             float* out = features.data() + i * shape.size();
             const Vec3f at = middleOf(voxels.table[i]);
-            sampleMade(shape, textured.density[0], at, voxels.frame[i], voxels.bend[i], out);
-            sampleRest(shape, fields, at, voxels.frame[i], voxels.bend[i], out + shape.made());
+            sampleMade(shape, textured.density[0], at, voxels.frame[i], voxels.curvature[i], out);
+            sampleRest(shape, fields, at, voxels.frame[i], voxels.curvature[i], out + shape.made());
         }
     });
     return features;
@@ -94,7 +95,8 @@ int main(int argc, char** argv) {
     const int band = int(std::ceil(reachOf(*fields.plain, *fields.textured))) + ((options.half + 2) << 2) + 2;
     const CutFaces cut = facesTouched(target);
     const IndexBox box = grown(target.domain, cut, band);
-    const auto plain = std::make_shared<const BrickField>(widenBand(*target.grid, box, cut, float(band)));
+    const auto plain =
+        std::make_shared<const BrickField>(gatherWideBand(*target.grid, box, cut, float(band)));
     const FieldPlace place{target.grid.get(), {double(box.min.x), double(box.min.y), double(box.min.z)}, 1};
     const FrameField frames = framesOf(plain, place, direction, "the target", {});
     const AnalogyPair pair{fields.plain, fields.textured, &pairFrames, fields.inner};

@@ -114,7 +114,7 @@ class Bench:
         else:
             others = f"Faiss {each(faiss):.0f} ms, {faiss['index_MB']:.0f} MB"
         self.row(name, f"{budget} of FFTW", f"{each(ours):.2f} ms a query", f"{each(rival):.2f} ms", f"{each(rival) / each(ours):.2f}x",
-                 f"index {ours['build_seconds']:.1f} s, {ours['index_MB']:.0f} MB; dearer: {ours['dearer_than_rival']:.0f}; by FFT: {ours['transforms'] * 100:.0f} %; "
+                 f"index {ours['build_seconds']:.1f} s, {ours['index_MB']:.0f} MB; costlier: {ours['dearer_than_rival']:.0f}; by FFT: {ours['transforms'] * 100:.0f} %; "
                  f"{'' if large else 'scan %.0f ms; ' % each(found['brute'])}{others}; "
                  f"tolerance 0.1: {each(near):.2f} ms, ratio {near['exactness_ratio']:.3f}, recall {near['recall']:.2f}")
 

@@ -9,11 +9,11 @@
 
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/base/random.h"
-#include "libvdbsynth/pipeline/make.h"
+#include "libvdbsynth/pipeline/make/make.h"
 #include "libvdbsynth/search/block_cost.h"
 #include "libvdbsynth/search/block_index.h"
 #include "libvdbsynth/search/block_index_data.h"
-#include "libvdbsynth/vdb/redistance.h"
+#include "libvdbsynth/vdb/bricks.h"
 
 #include <openvdb/openvdb.h>
 
@@ -58,7 +58,7 @@ BrickField sampleOf(const Row& row, int side, int block, std::uint64_t seed) {
     RunContext ctx;
     ctx.seed = seed;
     const LevelSet model = makeModel(options, ctx);
-    return widenBand(*model.grid, model.domain, kAllCut, std::max(8.f, float(block) / 2));
+    return gatherWideBand(*model.grid, model.domain, kAllCut, std::max(8.f, float(block) / 2));
 }
 
 std::vector<Query> cutQueries(const BrickField& other, int block, int count) {

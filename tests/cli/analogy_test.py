@@ -43,7 +43,7 @@ class Analogy(CliTest):
         self.write("s.json", json.dumps([{"position": [32, 10, 32], "direction": [1, 0, 0]}]))
         self.ok("analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--direction", "s.json")
         self.write("bad.csv", "1,2,3,0,0,0\n")
-        self.fails(3, "without a place or a direction", "analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--direction", "bad.csv")
+        self.fails(3, "without a position or a direction", "analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--direction", "bad.csv")
         self.write("bad.json", "[{\"position\": 1}]")
         self.fails(3, "not a list of", "analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--direction", "bad.json")
         self.write("short.csv", "1,2,3,4\n")
@@ -64,7 +64,7 @@ class Analogy(CliTest):
         self.ok("make", "dilation", "c.vdb", "c2.vdb", "--resolution", 48, "--voxel-size", 0.5)
         self.fails(1, "same --voxel-size", "analogy", "a.vdb", "c2.vdb", "b.vdb", "-o", "m.vdb")
         self.fails(2, "give two outputs", "make", "grooves", "g.vdb")
-        self.fails(1, "tells no direction", "analogy", "a.vdb", "a2.vdb", self.slab(), "-o", "m.vdb")
+        self.fails(1, "gives no direction", "analogy", "a.vdb", "a2.vdb", self.slab(), "-o", "m.vdb")
 
     def test_filter_on_numbers(self):
         """--naive on fog volumes learns what was done to the numbers and says how far off it is."""

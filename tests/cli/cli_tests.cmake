@@ -26,7 +26,8 @@ set_tests_properties("fuzz: readers" PROPERTIES LABELS "fuzz;slow" TIMEOUT 1200 
 add_test(NAME "lint: stairs" COMMAND /usr/bin/python3 ${PROJECT_SOURCE_DIR}/tools/dev/check_stairs.py ${PROJECT_SOURCE_DIR})
 add_test(NAME "lint: format" COMMAND ${PROJECT_SOURCE_DIR}/tools/dev/check_format.sh)
 add_test(NAME "lint: headers" COMMAND ${PROJECT_SOURCE_DIR}/tools/dev/check_headers.sh ${CMAKE_CXX_COMPILER})
-set_tests_properties("lint: stairs" "lint: format" "lint: headers" PROPERTIES LABELS lint SKIP_RETURN_CODE 77)
+add_test(NAME "lint: performance page" COMMAND /usr/bin/python3 ${PROJECT_SOURCE_DIR}/tools/dev/check_performance.py)
+set_tests_properties("lint: stairs" "lint: format" "lint: headers" "lint: performance page" PROPERTIES LABELS lint SKIP_RETURN_CODE 77)
 
 add_test(NAME "consumer: find_package" COMMAND ${PROJECT_SOURCE_DIR}/tests/consumer/run.sh ${CMAKE_COMMAND} ${PROJECT_BINARY_DIR})
 set_tests_properties("consumer: find_package" PROPERTIES LABELS consumer TIMEOUT 300)

@@ -40,7 +40,7 @@ class BadOptions(CliTest):
             ("--resolution 5", ["make", "grid", "x.vdb", "--resolution", 5]),
             ("--slice q=1", ["render", "g.vdb", "-o", "x.png", "--slice", "q=1"]),
             ("--size 9x9", ["render", "g.vdb", "-o", "x.png", "--size", "9x9"]),
-            ("--directions: are drawn on a surface", ["render", "g.vdb", "-o", "x.png", "--directions", "g.vdb", "--slice", "z=0.5"]),
+            ("--directions: cannot be combined with --slice", ["render", "g.vdb", "-o", "x.png", "--directions", "g.vdb", "--slice", "z=0.5"]),
             ("x.jpg: unknown extension; must be a .png file", ["render", "g.vdb", "-o", "x.jpg"]),
             ("--at: missing", ["match", "g.vdb", "g.vdb"]),
             ("mask blob: unknown kind", ["mask", "blob", "-o", "x.vdb"]),

@@ -42,7 +42,7 @@ class Doors(CliTest):
     def test_volumes_need_to_know_what_is_solid(self):
         values = [z * 10 for z in range(12) for _ in range(100)]
         self.write("v.npy", npy(values, "(12, 10, 10)"))
-        self.fails(1, "v.npy: say what of it is solid with --threshold VALUE or --labels LIST; its values run from 0 to 110",
+        self.fails(1, "v.npy: choose what is solid with --threshold VALUE or --labels LIST; its values range from 0 to 110",
                    "convert", "v.npy", "-o", "v.vdb")
         self.ok("convert", "v.npy", "-o", "v.vdb", "--threshold", 55)
         self.assertEqual(self.model("v.vdb")["solid_voxels"], 600)
@@ -50,7 +50,7 @@ class Doors(CliTest):
         self.assertEqual(self.model("v.vdb")["solid_voxels"], 400)
         self.fails(2, "--labels", "convert", "v.npy", "-o", "v.vdb", "--labels", "5-1")
         self.fails(2, "give one of them", "convert", "v.npy", "-o", "v.vdb", "--labels", "5", "--threshold", 5)
-        self.fails(1, "values of v.npy run from 0 to 110", "convert", "v.npy", "-o", "v.vdb", "--threshold", 500)
+        self.fails(1, "values of v.npy range from 0 to 110", "convert", "v.npy", "-o", "v.vdb", "--threshold", 500)
         self.write("flat.npy", npy([0, 1, 1, 0] * 16, "(8, 8)"))
         self.fails(2, "with --as volume it is a volume", "convert", "flat.npy", "-o", "f.vdb", "--threshold", 0.5)
         self.ok("convert", "flat.npy", "-o", "f.vdb", "--as", "volume")
@@ -194,9 +194,9 @@ class StandardStreams(CliTest):
     def test_errors(self):
         for content, words, code, says in (
                 (b"", ["convert", "-.obj", "-o", "a.vdb"], 3, b"-.obj: standard input is empty"),
-                (b"v 0 0 0", ["convert", "-", "-o", "a.vdb"], 2, b"does not tell what kind of file it is"),
+                (b"v 0 0 0", ["convert", "-", "-o", "a.vdb"], 2, b"the kind of file on standard input is unknown"),
                 (b"plx", ["convert", "-.ply", "-o", "a.vdb"], 3, b"-.ply:"),
-                (b"x", ["convert", "-.ply", "-o", "-"], 2, b"with -.EXT"),
+                (b"x", ["convert", "-.ply", "-o", "-"], 2, b"as -.EXT"),
                 (b"x", ["convert", "-.ply", "--as", "obj", "-o", "a.vdb"], 2, b"no input is -"),
                 (b"x", ["convert", "-.ply", "-.obj", "-o", "a.vdb"], 2, b"one input only")):
             result = self.piped(content, *words)

@@ -52,9 +52,9 @@ class Synth(CliTest):
         self.assertEqual(distances["surface"]["hausdorff"], 0)
         self.fails(1, "give scales from 0.25 to 4", "synth", "a.vdb", "-o", "n.vdb", "--size", "2x,2x,1x", "--scale-map", "ball.vdb")
         self.fails(2, "give at least two", "synth", "a.vdb", "-o", "n.vdb", "--size", "2x,2x,1x", "--exemplar-map", "left.vdb")
-        self.fails(2, "belong together", "synth", "a.vdb", "-o", "n.vdb", "--size", "2x,2x,1x", "--guide", "a.vdb")
+        self.fails(2, "--guide and --exemplar-guide: give both", "synth", "a.vdb", "-o", "n.vdb", "--size", "2x,2x,1x", "--guide", "a.vdb")
         self.fails(2, "once for each exemplar", "synth", "a.vdb", "b.vdb", "-o", "n.vdb", "--size", "2x,2x,1x", "--guide", "a.vdb", "--exemplar-guide", "a.vdb")
-        self.fails(2, "no meaning with --keep", "synth", "--keep", "a.vdb", "--hole", "4,4,4,9,9,9", "-o", "n.vdb", "--exemplar-map", "left.vdb")
+        self.fails(2, "cannot be combined with --keep", "synth", "--keep", "a.vdb", "--hole", "4,4,4,9,9,9", "-o", "n.vdb", "--exemplar-map", "left.vdb")
         self.fails(2, "needs --method default", "synth", "a.vdb", "-o", "n.vdb", "--size", "2x,2x,1x", "--rotation-map", "a.vdb", "--draft")
 
     def test_colours_come_along(self):
@@ -98,7 +98,7 @@ class Synth(CliTest):
             self.assertTrue(self.model(name)["valid"], name)
         self.fails(2, "--hole: missing", "synth", "--keep", "e.vdb", "-o", "x.vdb")
         self.fails(2, "--hole: needs --keep", "synth", "e.vdb", "--size", "2x,2x,1x", "--hole", "auto", "-o", "x.vdb")
-        self.fails(2, "--size: has no meaning with --keep", "synth", "--keep", "e.vdb", "--hole", "auto", "--size", "2x,2x,1x", "-o", "x.vdb")
+        self.fails(2, "--size: cannot be combined with --keep", "synth", "--keep", "e.vdb", "--hole", "auto", "--size", "2x,2x,1x", "-o", "x.vdb")
         self.fails(1, "--hole: needs a mesh", "synth", "--keep", "e.vdb", "--hole", "auto", "-o", "x.vdb")
         self.fails(1, "outside the model's domain", "synth", "--keep", "e.vdb", "--hole", "160,16,16,171,31,31", "-o", "x.vdb")
         self.fails(3, "nothere.vdb", "synth", "--keep", "nothere.vdb", "--hole", "auto", "-o", "x.vdb")

@@ -8,7 +8,7 @@
 #include <openvdb/openvdb.h>
 
 #include "libvdbsynth/base/error.h"
-#include "libvdbsynth/pipeline/synth.h"
+#include "libvdbsynth/pipeline/synth/synth.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 
 namespace {
@@ -44,10 +44,10 @@ bool makesMore(const vdbsynth::LevelSet& exemplar) {
     context.threads = 2;  // of this call; others keep theirs
     context.onMessage = [](vdbsynth::MessageLevel, const std::string& text) { std::puts(text.c_str()); };
     const vdbsynth::LevelSet more = vdbsynth::synthesize(exemplar, options, context).model;
-    std::printf("%zu active voxels, %zu grid carried\n", vdbsynth::activeVoxels(*more.grid),
-                more.carried.size());
-    return more.domain.size() == vdbsynth::Index3{2 * kSide, kSide, kSide} && more.carried.size() == 1 &&
-           more.carried.front()->activeVoxelCount() > 1000;
+    std::printf("%zu active voxels, %zu attribute grid\n", vdbsynth::activeVoxels(*more.grid),
+                more.attributes.size());
+    return more.domain.size() == vdbsynth::Index3{2 * kSide, kSide, kSide} && more.attributes.size() == 1 &&
+           more.attributes.front()->activeVoxelCount() > 1000;
 }
 
 // Stopped from another thread once the work has begun.
@@ -91,6 +91,6 @@ int main() {
     vdbsynth::LevelSet exemplar = vdbsynth::modelFromGrids("balls", {grids[0]});
     exemplar.domain = vdbsynth::IndexBox::fromSize({kSide, kSide, kSide});  // a texture that fills its box
     exemplar.domainRecorded = true;
-    exemplar.carried = {grids[1]};
+    exemplar.attributes = {grids[1]};
     return makesMore(exemplar) && stopsWhenTold(exemplar) && saysWhatIsWrong(exemplar) ? 0 : 1;
 }

@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "libvdbsynth/geometry/triangle.h"
-
 using namespace vdbsynth;
 
 TEST_CASE("groupColumns: colours of bytes and of reals, vectors, texture coordinates, the rest",
@@ -40,22 +38,4 @@ TEST_CASE("selectRows: keeps rows in the order asked for", "[geometry][fast]") {
     const Attributes made = selectRows({{"a", 2, {1, 2, 3, 4, 5, 6}}, {"b", 1, {7, 8, 9}}}, {2, 0});
     CHECK(made[0].values == std::vector<float>{5, 6, 1, 2});
     CHECK(made[1].values == std::vector<float>{9, 7});
-}
-
-TEST_CASE("nearestInTriangle: face, edges, corners and no area", "[geometry][oracle]") {
-    const Vec3d a{0, 0, 0}, b{4, 0, 0}, c{0, 4, 0};
-    const auto is = [](const Vec3d& w, double x, double y, double z) {
-        return w.x == Approx(x).margin(1e-12) && w.y == Approx(y).margin(1e-12) &&
-               w.z == Approx(z).margin(1e-12);
-    };
-    CHECK(is(nearestInTriangle({1, 1, 5}, a, b, c), 0.5, 0.25, 0.25));
-    CHECK(is(nearestInTriangle({-1, -1, 0}, a, b, c), 1, 0, 0));
-    CHECK(is(nearestInTriangle({9, -1, 0}, a, b, c), 0, 1, 0));
-    CHECK(is(nearestInTriangle({0, 7, 0}, a, b, c), 0, 0, 1));
-    CHECK(is(nearestInTriangle({1, -3, 0}, a, b, c), 0.75, 0.25, 0));
-    CHECK(is(nearestInTriangle({-3, 2, 0}, a, b, c), 0.5, 0, 0.5));
-    CHECK(is(nearestInTriangle({3, 3, 0}, a, b, c), 0, 0.5, 0.5));
-    const Vec3d flat = nearestInTriangle({2, 1, 0}, a, b, a);
-    CHECK(flat.x + flat.y + flat.z == Approx(1));
-    CHECK(std::isfinite(flat.x));
 }

@@ -15,7 +15,7 @@ TEST_CASE("requireMesh: what a program may get wrong is an error that names it",
     CHECK(refused({}).code == int(ErrorCode::EmptyInput));
     Mesh bad = good;
     bad.quads[2][1] = 8;
-    CHECK(test::contains(refused(bad).message, "box: face 2 names point 8 of 8"));
+    CHECK(test::contains(refused(bad).message, "box: face 2 uses point 8 of 8"));
     bad = good;
     bad.triangles.push_back({0, 1, 4000000000u});
     CHECK(refused(bad).code == int(ErrorCode::BadData));

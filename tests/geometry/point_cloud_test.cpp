@@ -4,23 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "libvdbsynth/base/random.h"
-#include "libvdbsynth/geometry/point_neighbours.h"
 #include "tests/support/makers.h"
 
 using namespace vdbsynth;
 
 namespace {
-
-PointCloud noise(std::size_t count, std::uint64_t seed) {
-    Random random(seed, 1, 2);
-    PointCloud cloud;
-    for (std::size_t i = 0; i < count; ++i)
-        cloud.points.push_back({float(random.uniform()), float(random.uniform()), float(random.uniform())});
-    return cloud;
-}
 
 PointCloud ball(float radius) {
     PointCloud cloud;
@@ -29,29 +18,6 @@ PointCloud ball(float radius) {
 }
 
 }  // namespace
-
-TEST_CASE("PointNeighbours: the nearest are those of a scan", "[geometry][oracle]") {
-    const PointCloud cloud = noise(500, 3);
-    const PointNeighbours tree(cloud.points);
-    for (const Vec3f& place : noise(50, 4).points) {
-        std::vector<float> all;
-        for (const Vec3f& p : cloud.points) all.push_back(dot(p - place, p - place));
-        std::sort(all.begin(), all.end());
-        std::uint32_t numbers[10];
-        float squared[10];
-        REQUIRE(tree.nearest(place, 10, numbers, squared) == 10);
-        for (std::size_t k = 0; k < 10; ++k) {
-            CHECK(squared[k] == Approx(all[k]).epsilon(1e-5));
-            CHECK(dot(cloud.points[numbers[k]] - place, cloud.points[numbers[k]] - place) ==
-                  Approx(squared[k]));
-        }
-    }
-    const std::vector<Vec3f> few{{0, 0, 0}, {1, 0, 0}};
-    std::uint32_t numbers[5];
-    float squared[5];
-    CHECK(PointNeighbours(few).nearest({0.9f, 0, 0}, 5, numbers, squared) == 2);
-    CHECK(numbers[0] == 1);
-}
 
 TEST_CASE("pointSpacing: about the step of a square lattice", "[geometry][oracle]") {
     PointCloud plane;

@@ -1,4 +1,5 @@
 #include "libvdbsynth/grid/brick_field.h"
+#include "libvdbsynth/math/lattice.h"
 
 #include <catch2/catch.hpp>
 
@@ -24,13 +25,26 @@ TEST_CASE("BrickField: reads give what generate was given, clamped to the box ou
 
 TEST_CASE("BrickField: a box that does not begin at 0 keeps its coordinates", "[grid][fast]") {
     const IndexBox box{{-5, 3, -9}, {6, 12, 2}};
-    const BrickField field = BrickField::generate(box, {}, [](const IndexBox& brick, float* samples) {
-        for (int x = brick.min.x; x <= brick.max.x; ++x)
-            for (int y = brick.min.y; y <= brick.max.y; ++y)
-                for (int z = brick.min.z; z <= brick.max.z; ++z) *samples++ = float(x * 100 + y * 10 + z);
-    });
+    const BrickField field =
+        BrickField::fromVoxels(box, {}, [](const Index3& p) { return float(p.x * 100 + p.y * 10 + p.z); });
     CHECK(field.at({-5, 3, -9}) == -479.f);
     CHECK(field.at({6, 12, 2}) == 722.f);
+}
+
+TEST_CASE("BrickField: fromVoxels gives every voxel its value, as generate does brick by brick",
+          "[grid][property]") {
+    const IndexBox box{{-5, 3, -9}, {6, 12, 2}};
+    const auto value = [](const Index3& p) { return float(p.x < 0 ? 1 : p.x * 100 + p.y * 10 + p.z); };
+    RunContext ctx;
+    ctx.threads = 3;
+    const BrickField field = BrickField::fromVoxels(box, ctx, value);
+    CHECK(field.box() == box);
+    forEachVoxel(box, [&](const Index3& p) { CHECK(field.at(p) == value(p)); });
+    const BrickField same = BrickField::generate(box, ctx, [&](const IndexBox& brick, float* samples) {
+        forEachVoxel(brick, [&](const Index3& p) { *samples++ = value(p); });
+    });
+    CHECK(field.storedBricks() == same.storedBricks());
+    CHECK(test::samplesOf(field) == test::samplesOf(same));
 }
 
 TEST_CASE("BrickField: constant bricks are not stored, and a write stores only what changes",

@@ -2,7 +2,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "libvdbsynth/grid/field_sampling.h"
 #include "tests/support/makers.h"
 
 using namespace vdbsynth;
@@ -36,20 +35,4 @@ TEST_CASE("VoxelTable: the same numbers for any threads, nothing, and all of a c
     const BrickField constant(IndexBox::fromSize({9, 8, 7}), 2.f);
     CHECK(VoxelTable::where(constant, [](float) { return true; }).size() == 9 * 8 * 7);
     CHECK(VoxelTable::where(constant, [](float) { return false; }).size() == 0);
-}
-
-TEST_CASE("sampleTrilinear: exact for a linear field, also across bricks, clamped outside", "[grid]") {
-    const BrickField field = test::fieldFrom(
-        {20, 20, 20}, [](const Index3& p) { return float(2 * p.x) - float(p.y) + 0.5f * float(p.z); });
-    for (std::uint64_t i = 0; i < 100; ++i) {
-        Random random(3, i);
-        const Vec3f p{float(random.uniform(0, 19)), float(random.uniform(0, 19)),
-                      float(random.uniform(0, 19))};
-        CHECK(sampleTrilinear(field, p) == Approx(2 * p.x - p.y + 0.5f * p.z).margin(1e-4));
-    }
-    const Vec3f gradient = sampleGradient(field, {7.9f, 8.1f, 3});
-    CHECK(gradient.x == Approx(2).margin(1e-4));
-    CHECK(gradient.y == Approx(-1).margin(1e-4));
-    CHECK(gradient.z == Approx(0.5).margin(1e-4));
-    CHECK(sampleTrilinear(field, {-5, 3, 2}) == Approx(-2));
 }

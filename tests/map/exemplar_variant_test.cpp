@@ -65,7 +65,7 @@ TEST_CASE("chooseVariants: near everything that is wanted, few", "[synth][proper
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         const ExemplarVariant& variant = chosen.variants[std::size_t(chosen.number[i])];
         REQUIRE(variant.exemplar == wanted[i].exemplar);
-        REQUIRE(likeness(variant.rotation, wanted[i].rotation) >=
+        REQUIRE(similarity(variant.rotation, wanted[i].rotation) >=
                 cosine(chosen.tolerance * kPi / 360) - 1e-12);
     }
     const ChosenVariants one = chooseVariants({{0, {0, 0, 0}, 1}, {0, {0, 0, 2 * kPi}, 1}});

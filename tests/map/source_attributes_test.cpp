@@ -69,10 +69,10 @@ TEST_CASE("sourcesFromAttributes: what is no map is refused", "[map][error]") {
     CHECK(test::contains(message(bad), "\"source\" is not 3 numbers"));
     bad = good;
     bad[1].values[0] = 0.5f;
-    CHECK(test::contains(message(bad), "no source"));
+    CHECK(test::contains(message(bad), "invalid numbers"));
     bad = good;
     bad[0].values[1] = NAN;
-    CHECK(test::contains(message(bad), "no source"));
+    CHECK(test::contains(message(bad), "invalid numbers"));
     CHECK(test::thrownBy([] { sourceAttributes(ElementSources()); }).code == int(ErrorCode::InvalidOption));
     Source far;
     far.position = {3e7, 0, 0};

@@ -2,8 +2,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "libvdbsynth/math/disjoint_sets.h"
-
 #include <cmath>
 
 using namespace vdbsynth;
@@ -25,17 +23,4 @@ TEST_CASE("affine: a quarter turn about z takes x to y, volumes stay", "[math][o
     Affine mirrored = kIdentity;
     mirrored[0] = -2;
     CHECK(determinant(mirrored) == -2);
-}
-
-TEST_CASE("DisjointSets: the lowest number is the root, whatever the order of joins", "[math][property]") {
-    DisjointSets a(6), b(6);
-    a.join(5, 3);
-    a.join(3, 1);
-    b.join(1, 3);
-    b.join(1, 5);
-    for (std::uint32_t i = 0; i < 6; ++i) CHECK(a.root(i) == b.root(i));
-    CHECK(a.root(5) == 1);
-    CHECK(a.root(4) == 4);
-    a.add();
-    CHECK(a.root(6) == 6);
 }

@@ -110,21 +110,3 @@ TEST_CASE("matchPatches: finds what a search over all places finds, and copies a
     one.threads = 1;
     CHECK(matchPatches(from, to, 25, 1e30, one).costs == matches.costs);
 }
-
-TEST_CASE("localPatchSimilarity: 1 for a copy, as counted by hand for two slabs", "[measure][oracle]") {
-    const Occupancy balls = Occupancy::fromField(test::ballsField({40, 40, 40}, 3, 3.f, 12));
-    const LocalPatches same = localPatchSimilarity({balls}, {balls});
-    CHECK(same.shareIoU == 1);
-    CHECK(same.shareScore == 1);
-    CHECK(same.meanIoU == 1);
-    // Slabs that fill a patch's lower 5 of 11 layers against those that fill 6: overlap 5 / 6, F-score 10
-    // / 11.
-    const auto slab = [](int top) {
-        return Occupancy::fromField(
-            test::fieldFrom({21, 21, 21}, [top](const Index3& p) { return p.z < top ? -1.f : 1.f; }));
-    };
-    const LocalPatches two = localPatchSimilarity({slab(10)}, {slab(11)});
-    CHECK(two.meanIoU < 0.95);
-    CHECK(two.shareIoU < 0.5);
-    CHECK(localPatchSimilarity({slab(0)}, {slab(10)}).meanIoU == 0);
-}

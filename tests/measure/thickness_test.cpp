@@ -24,45 +24,6 @@ ThicknessSummary solidSummary(const BrickField& field, int coarsening = 1) {
 
 }  // namespace
 
-TEST_CASE("distancesToSurface: within a third of a voxel of a ball's true distances", "[measure][oracle]") {
-    const Vec3d centre{31.4, 30.8, 32.1};
-    const BrickField field =
-        distances({64, 64, 64}, 3, [&](const Vec3d& p) { return length(p - centre) - 20; });
-    const Distances all = distancesToSurface(field, 3, 1);
-    double worst = 0, sum = 0;
-    for (int x = 0; x < 64; ++x)
-        for (int y = 0; y < 64; ++y)
-            for (int z = 0; z < 64; ++z) {
-                const double truth = length(Vec3d{double(x), double(y), double(z)} - centre) - 20;
-                const double off = std::abs(double(all.at({x, y, z})) - truth);
-                worst = std::max(worst, off);
-                sum += off;
-            }
-    CHECK(worst < 0.34);
-    CHECK(sum / (64 * 64 * 64) < 0.05);
-}
-
-TEST_CASE("distancesToSurface: the nearest foot is the nearest", "[measure][oracle]") {
-    // Feet are where single voxels of a surface say; the brute search is over the same feet.
-    const Index3 size{17, 13, 15};
-    const BrickField solid = test::fieldFrom(size, [](const Index3& p) {
-        return Random(2, std::uint64_t((p.x * 50 + p.y) * 50 + p.z)).uniform() < 0.02 ? 0.f : 3.f;
-    });
-    const Distances outside = distancesToSurface(solid, 0, 1);
-    for (int n = 0; n < size.x * size.y * size.z; ++n) {
-        const Index3 p{n / size.z / size.y, n / size.z % size.y, n % size.z};
-        double best = 1e9;
-        for (int m = 0; m < size.x * size.y * size.z; ++m) {
-            const Index3 q{m / size.z / size.y, m / size.z % size.y, m % size.z};
-            const Vec3d apart{double(p.x - q.x), double(p.y - q.y), double(p.z - q.z)};
-            if (solid.at(q) == 0) best = std::min(best, length(apart));
-        }
-        REQUIRE(double(outside.at(p)) == Approx(best).margin(1e-4));
-    }
-    const Distances nothing = distancesToSurface(BrickField(solid.box(), -3.f), 0, 1);
-    CHECK(nothing.at({3, 3, 3}) == -17);
-}
-
 TEST_CASE("localThickness: a ball is as thick as its diameter, everywhere", "[measure][oracle]") {
     for (double radius : {5.0, 11.5, 26.0}) {  // the last one is drawn on a coarser lattice
         const BrickField field = distances({64, 64, 64}, 3, [&](const Vec3d& p) {
@@ -142,7 +103,4 @@ TEST_CASE("localThickness: the same for any number of threads, shares sum to one
     const ThicknessSummary summary = solidSummary(field);
     CHECK(std::accumulate(summary.share.begin(), summary.share.end(), 0.0) == Approx(1));
     CHECK(solidSummary(BrickField(field.box(), 1.f)).mean == 0);
-    RunContext small;
-    small.maxMemory = 1000;
-    CHECK(test::thrownBy([&] { distancesToSurface(field, 3, 1, small); }).code == int(ErrorCode::Memory));
 }

@@ -1,7 +1,5 @@
 #include "libvdbsynth/measure/verdict.h"
 
-#include "libvdbsynth/measure/surface_distance.h"
-
 #include <catch2/catch.hpp>
 
 #include "tests/support/makers.h"
@@ -34,9 +32,8 @@ TEST_CASE("judge: mean, sigma and quartile of eight parts, by hand", "[measure][
     CHECK_FALSE(judgeDistance("d", {1, 1, 1, 1}, 1.1).passes());
 }
 
-TEST_CASE("statisticDistance: a curve's is the root of the mean square", "[measure][oracle]") {
+TEST_CASE("meanOf: number by number", "[measure][oracle]") {
     const Statistic a{"c", 0, true, {0, 1, 2, 3}}, b{"c", 0, true, {0, 1, 2, 5}};
-    CHECK(statisticDistance(a, b) == Approx(1));
     CHECK(meanOf({a, b}).values == std::vector<double>{0, 1, 2, 4});
 }
 
@@ -61,54 +58,4 @@ TEST_CASE("Yardstick: the ratio has at least the shift below it", "[measure][ora
     CHECK(Yardstick{"y", 2, 4, 1}.ratio() == Approx(0.5));
     CHECK(Yardstick{"y", 2, 1, 4}.ratio() == Approx(0.5));
     CHECK(Yardstick{"y", 0, 0, 0}.ratio() == 0);
-}
-
-TEST_CASE("surfaceDistance: two spheres are their radii's difference apart", "[measure][oracle]") {
-    const Mesh small = test::sphereMesh(10, 5), large = test::sphereMesh(11, 5);
-    const SurfaceDistance d = surfaceDistance(small, large);
-    CHECK(d.mean == Approx(1).margin(0.01));
-    CHECK(d.rootMean == Approx(1).margin(0.01));
-    CHECK(d.hausdorff == Approx(1).margin(0.01));
-    CHECK(surfaceDistance(small, small).hausdorff == Approx(0).margin(1e-6));
-    // A bump of one vertex: Hausdorff sees it, the mean hardly.
-    Mesh bumped = small;
-    bumped.points[0] = bumped.points[0] * 1.3f;
-    const SurfaceDistance bump = surfaceDistance(small, bumped);
-    CHECK(bump.hausdorff == Approx(3).margin(0.1));
-    CHECK(bump.mean < 0.01);
-}
-
-TEST_CASE("measureStatistics: names, and values of a lattice of slabs", "[measure][oracle]") {
-    MeasuredModel model;
-    model.field = std::make_shared<const BrickField>(test::fieldFrom({60, 48, 50}, [](const Index3& p) {
-        return std::clamp(std::abs(float(p.x % 12) - 5.75f) - 3.f, -3.f, 3.f);
-    }));
-    model.counted = model.field->box();
-    // Faces of the slabs as quads of the whole box, outward.
-    prepare(model, 1);
-    const std::vector<Statistic> all = measureStatistics(model, model.counted, 20);
-    const auto value = [&](const std::string& name, std::size_t i = 0) {
-        for (const Statistic& statistic : all)
-            if (statistic.name == name) return statistic.values.at(i);
-        FAIL(name);
-        return 0.0;
-    };
-    CHECK(value("volume fraction") == Approx(0.5));
-    CHECK(value("local thickness mean") == Approx(6).margin(0.5));
-    CHECK(value("local thickness deviation") < 0.4);
-    CHECK(value("pore size mean") == Approx(6).margin(0.7));
-    CHECK(value("mean chord", 0) == Approx(6).epsilon(0.03));
-    CHECK(value("Euler characteristic per volume") == Approx(0).margin(1e-12));
-    CHECK(value("two-point correlation by axis", 6) < 0.1);
-    CHECK(value("two-point correlation by axis", 12) == Approx(0.5).margin(0.02));
-    CHECK(measureGradient(model).mean == Approx(0).margin(1e-5));
-    const Topology topology = measureTopology(model);
-    CHECK(topology.solid.sizes.size() == 5);
-    CHECK(topology.empty.sizes.size() == 6);
-    CHECK(topology.tunnels == 0);
-
-    MeasuredModel steep = model;
-    steep.field = std::make_shared<const BrickField>(
-        test::fieldFrom({60, 48, 50}, [&](const Index3& p) { return 1.2f * model.field->at(p); }));
-    CHECK(measureGradient(steep).mean == Approx(0.2).margin(0.02));
 }

@@ -8,10 +8,10 @@
 #include <thread>
 #include <vector>
 
-#include "libvdbsynth/pipeline/analogy.h"
-#include "libvdbsynth/pipeline/make.h"
-#include "libvdbsynth/pipeline/match.h"
-#include "libvdbsynth/pipeline/synth.h"
+#include "libvdbsynth/pipeline/analogy/analogy.h"
+#include "libvdbsynth/pipeline/make/make.h"
+#include "libvdbsynth/pipeline/match/match.h"
+#include "libvdbsynth/pipeline/synth/synth.h"
 #include "tests/support/makers.h"
 #include "tests/support/temporary_folder.h"
 

@@ -9,20 +9,20 @@
 #include <vector>
 
 #include "libvdbsynth/base/hash.h"
-#include "libvdbsynth/pipeline/analogy.h"
-#include "libvdbsynth/pipeline/compare.h"
-#include "libvdbsynth/pipeline/control.h"
-#include "libvdbsynth/pipeline/crop.h"
-#include "libvdbsynth/pipeline/fill.h"
-#include "libvdbsynth/pipeline/filter_analogy.h"
-#include "libvdbsynth/pipeline/make.h"
-#include "libvdbsynth/pipeline/match.h"
-#include "libvdbsynth/pipeline/model.h"
-#include "libvdbsynth/pipeline/outputs.h"
-#include "libvdbsynth/pipeline/repeat.h"
-#include "libvdbsynth/pipeline/synth.h"
+#include "libvdbsynth/pipeline/analogy/analogy.h"
+#include "libvdbsynth/pipeline/analogy/filter_analogy.h"
+#include "libvdbsynth/pipeline/compare/compare.h"
+#include "libvdbsynth/pipeline/convert/model.h"
+#include "libvdbsynth/pipeline/convert/outputs.h"
+#include "libvdbsynth/pipeline/crop/crop.h"
+#include "libvdbsynth/pipeline/fill/fill.h"
+#include "libvdbsynth/pipeline/make/make.h"
+#include "libvdbsynth/pipeline/match/match.h"
+#include "libvdbsynth/pipeline/repeat/repeat.h"
+#include "libvdbsynth/pipeline/synth/synth.h"
+#include "libvdbsynth/render/preview.h"
+#include "libvdbsynth/vdb/control_grids.h"
 #include "libvdbsynth/vdb/mask.h"
-#include "libvdbsynth/vdb/preview.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "tests/support/makers.h"
 #include "tests/support/temporary_folder.h"
@@ -50,7 +50,8 @@ public:
     }
     void add(const LevelSet& model) {
         mGrids.push_back({model.grid, model.grid->getName(), printOf(*model.grid)});
-        for (const GridPtr& grid : model.carried) mGrids.push_back({grid, grid->getName(), printOf(*grid)});
+        for (const GridPtr& grid : model.attributes)
+            mGrids.push_back({grid, grid->getName(), printOf(*grid)});
     }
     std::string changed() const {
         std::string names;
@@ -95,7 +96,7 @@ LevelSet made(const char* kind, int resolution) {
     density->setName("density");
     density->setTransform(model.grid->transform().copy());
     for (auto it = model.grid->cbeginValueOn(); it; ++it) density->tree().setValueOn(it.getCoord(), 2.f);
-    model.carried = {density};
+    model.attributes = {density};
     return model;
 }
 
@@ -121,9 +122,9 @@ TEST_CASE("synthesize: inputs and controls stay as they are", "[pipeline][proper
     options.size = TargetSize::multiples(1.5, 1, 1);
     options.exemplarMask = boxMask(balls.domain, 1);
     options.exemplarMap = asControl(grid.grid);
-    options.guide = balls.carried.front();
-    options.exemplarGuides = {balls.carried.front(), balls.grid};
-    options.carried = CarriedValues::Blended;
+    options.guide = balls.attributes.front();
+    options.exemplarGuides = {balls.attributes.front(), balls.grid};
+    options.carried = AttributeValues::Blended;
     Watch watch({options.exemplarMask});
     watch.add(balls);
     watch.add(grid);
@@ -140,7 +141,7 @@ TEST_CASE("matchModel, cropModel, withHalfWidth, compareModels, writeModel: inpu
     watch.add(model);
     MatchOptions match;
     match.block = 8;
-    match.mask = model.carried.front();
+    match.mask = model.attributes.front();
     match.at = {10, 10, 10};
     matchModel(model, model, match);
     CHECK(watch.changed().empty());
@@ -165,7 +166,7 @@ TEST_CASE("makeAnalogyModel: pairs, target, mask and directions stay as they are
     const ModelPair pair = makePair(make);
     const LevelSet target = made("three-tori", 48);
     AnalogyOptions options;
-    options.mask = target.carried.front();
+    options.mask = target.attributes.front();
     options.direction.kind = DirectionSource::Kind::Grid;
     auto up = openvdb::Vec3SGrid::create(openvdb::Vec3f(0.2f, 0.1f, 1));
     options.direction.grid = up;
@@ -193,11 +194,11 @@ TEST_CASE("fillHoles: the partial model, the hole and the exemplar stay as they 
     watch.add(model);
     watch.add(hole);
     const FillResult result = fillHoles(model, hole, nullptr);
-    CHECK(result.model.carried.size() == 1);
+    CHECK(result.model.attributes.size() == 1);
     CHECK(watch.changed().empty());
 }
 
-TEST_CASE("makeFilteredGrid: grids of numbers stay as they are", "[pipeline][property]") {
+TEST_CASE("makeFilteredGrid: scalar grids stay as they are", "[pipeline][property]") {
     const auto before = fogOf("before", true), after = fogOf("after", true), target = fogOf("target", true);
     for (auto it = after->beginValueOn(); it; ++it) it.setValue(*it * 2);
     const Watch watch({before, after, target});

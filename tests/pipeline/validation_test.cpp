@@ -10,20 +10,20 @@
 #include <string>
 #include <vector>
 
-#include "libvdbsynth/pipeline/analogy.h"
-#include "libvdbsynth/pipeline/compare.h"
-#include "libvdbsynth/pipeline/crop.h"
-#include "libvdbsynth/pipeline/fill.h"
-#include "libvdbsynth/pipeline/filter_analogy.h"
-#include "libvdbsynth/pipeline/make.h"
-#include "libvdbsynth/pipeline/match.h"
-#include "libvdbsynth/pipeline/model.h"
-#include "libvdbsynth/pipeline/outputs.h"
-#include "libvdbsynth/pipeline/repeat.h"
-#include "libvdbsynth/pipeline/synth.h"
+#include "libvdbsynth/pipeline/analogy/analogy.h"
+#include "libvdbsynth/pipeline/analogy/filter_analogy.h"
+#include "libvdbsynth/pipeline/compare/compare.h"
+#include "libvdbsynth/pipeline/convert/model.h"
+#include "libvdbsynth/pipeline/convert/outputs.h"
+#include "libvdbsynth/pipeline/crop/crop.h"
+#include "libvdbsynth/pipeline/fill/fill.h"
+#include "libvdbsynth/pipeline/make/make.h"
+#include "libvdbsynth/pipeline/match/match.h"
+#include "libvdbsynth/pipeline/repeat/repeat.h"
+#include "libvdbsynth/pipeline/synth/synth.h"
+#include "libvdbsynth/render/preview.h"
 #include "libvdbsynth/synth/block_synthesis.h"
 #include "libvdbsynth/vdb/mask.h"
-#include "libvdbsynth/vdb/preview.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "tests/support/makers.h"
 #include "tests/support/temporary_folder.h"
@@ -79,13 +79,13 @@ std::vector<BadModel> badModels(const LevelSet& good) {
     LevelSet null = good;
     null.grid = nullptr;
     all.push_back({"`grid` is null", ErrorCode::InvalidOption, null});
-    all.push_back({"is no level set", ErrorCode::Unusable, withGrid(good, [](openvdb::FloatGrid& grid) {
+    all.push_back({"is not a level set", ErrorCode::Unusable, withGrid(good, [](openvdb::FloatGrid& grid) {
                        grid.setGridClass(openvdb::GRID_FOG_VOLUME);
                    })});
-    all.push_back({"no cubes", ErrorCode::Unusable, withGrid(good, [](openvdb::FloatGrid& grid) {
+    all.push_back({"not cubes", ErrorCode::Unusable, withGrid(good, [](openvdb::FloatGrid& grid) {
                        grid.transform().preScale(openvdb::Vec3d(1, 1, 2));
                    })});
-    all.push_back({"no cubes", ErrorCode::Unusable, withGrid(good, [](openvdb::FloatGrid& grid) {
+    all.push_back({"not cubes", ErrorCode::Unusable, withGrid(good, [](openvdb::FloatGrid& grid) {
                        grid.setTransform(openvdb::math::Transform::createFrustumTransform(
                            openvdb::BBoxd(openvdb::Vec3d(0), openvdb::Vec3d(32)), 0.5, 10));
                    })});
@@ -96,9 +96,9 @@ std::vector<BadModel> badModels(const LevelSet& good) {
                    })});
     all.push_back({"no active voxels", ErrorCode::EmptyInput,
                    withGrid(good, [](openvdb::FloatGrid& grid) { grid.clear(); })});
-    LevelSet carried = good;
-    carried.carried = {nullptr};
-    all.push_back({"`carried`", ErrorCode::InvalidOption, carried});
+    LevelSet nullAttribute = good;
+    nullAttribute.attributes = {nullptr};
+    all.push_back({"`attributes`", ErrorCode::InvalidOption, nullAttribute});
     LevelSet empty = good;
     empty.domain = IndexBox();
     all.push_back({"`domain`", ErrorCode::InvalidOption, empty});
@@ -467,7 +467,7 @@ TEST_CASE("fields and blocks: what block search and synthesis cannot work on is 
     const auto blocks = [&](const B& options) { synthesizeBlocks({field}, options); };
     cases.push_back(with("`size`", &B::size, Index3{1 << 30, 24, 24}, blocks, target));
     cases.push_back(with("`drift`", &B::drift, -1, blocks, target));
-    cases.push_back(with("`which`", &B::which, &small, blocks, target, ErrorCode::ShapeMismatch));
+    cases.push_back(with("`exemplarMap`", &B::exemplarMap, &small, blocks, target, ErrorCode::ShapeMismatch));
     cases.push_back(with("`masks` 1", &B::masks, {&small}, blocks, target, ErrorCode::ShapeMismatch));
     cases.push_back(with("`guide`", &B::guide, &small, blocks, target));
     cases.push_back(with("`known`", &B::known, &small, blocks, target));

@@ -65,7 +65,7 @@ TEST_CASE("Block index file: what was kept is read and answers the same", "[sear
     REQUIRE(folder.files().size() == 1);
     CHECK(same(answers(BlockIndex::build(field, options, ctx), *field), expected));
     REQUIRE(said.size() == 2);
-    CHECK(test::contains(said[0], "will be kept"));
+    CHECK(test::contains(said[0], "will be saved"));
     CHECK(test::contains(said[1], "read from"));
     CHECK(folder.files().size() == 1);
 }
@@ -102,7 +102,7 @@ TEST_CASE("Block index file: a damaged or truncated one is refused and made agai
         setByte(file, at, '\x5a');
         CHECK(same(answers(BlockIndex::build(field, options, ctx), *field), expected));
         REQUIRE(said.size() == 1);
-        CHECK(test::contains(said[0], "it is made again"));
+        CHECK(test::contains(said[0], "it is rebuilt"));
     }
     for (std::streamoff length : {std::streamoff(0), std::streamoff(20), size - 4}) {
         fs::resize_file(file, std::uintmax_t(length));

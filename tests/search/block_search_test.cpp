@@ -4,7 +4,6 @@
 
 #include <limits>
 
-#include "libvdbsynth/search/block_sift.h"
 #include "tests/support/makers.h"
 
 using namespace vdbsynth;
@@ -75,32 +74,4 @@ TEST_CASE("searchByBounds: gives up within the work it may do, with costs that a
     }
     CHECK(gaveUp);
     CHECK(finished);
-}
-
-TEST_CASE("searchByCorrelation: goes on with what is known, finished or not by how much is alike",
-          "[search][property]") {
-    const BrickField field = test::ballsField({34, 32, 36}, 4, 3.f);
-    const BlockIndexData data = dataOf(field, 8);
-    const BlockCorrelation correlation(field, 8);
-    const std::vector<float> samples = test::samplesOf(test::noiseField({8, 8, 8}, 9));
-    BlockQuery first, second;
-    first.samples = second.samples = samples.data();
-    second.candidates = {{3, 4, 5}, {20, 11, 6}};
-    std::array<SiftedQuery, 2> queries{SiftedQuery{&first, matchBlocksLinearly(field, 8, first, 1)},
-                                       SiftedQuery{&second, {}}};
-    BlockSearchCounts counts;
-    BlockCorrelation::Workspace workspace;
-    const auto found = searchByCorrelation(data, correlation, queries, 4, counts, workspace);
-    CHECK((found[0].finished && found[1].finished));
-    requireSame(found[0].matches, matchBlocksLinearly(field, 8, first, 4));
-    requireSame(found[1].matches, matchBlocksLinearly(field, 8, second, 4));
-    CHECK(counts.transforms == 2);
-    CHECK(counts.exact < 200);
-
-    // Over ten thousand blocks are equal: all of them could be the first.
-    const BrickField constant(IndexBox::fromSize({34, 34, 34}), 1.f);
-    const auto many = searchByCorrelation(dataOf(constant, 8), BlockCorrelation(constant, 8),
-                                          {SiftedQuery{&first, {}}, SiftedQuery{}}, 1, counts, workspace);
-    CHECK_FALSE(many[0].finished);
-    CHECK(counts.transforms == 2);
 }

@@ -35,7 +35,7 @@ TEST_CASE("FeatureIndex: the nearest equals a linear scan's", "[search][property
     }
 }
 
-TEST_CASE("FeatureIndex: nothing beyond the bound, and never worse than the slack allows",
+TEST_CASE("FeatureIndex: nothing beyond the bound, and never worse than epsilon allows",
           "[search][property]") {
     const std::vector<float> rows = randomRows(2000, 6, 3), queries = randomRows(100, 6, 4);
     const FeatureIndex index(rows, 6);
@@ -44,10 +44,10 @@ TEST_CASE("FeatureIndex: nothing beyond the bound, and never worse than the slac
         const FeatureMatch exact = nearestLinearly(rows, 6, query);
         CHECK(index.nearest(query, exact.squared * 0.99f).row == -1);
         CHECK(index.nearest(query, exact.squared * 1.01f).row == exact.row);
-        for (float slack : {1.f, 4.f}) {
-            const FeatureMatch near = index.nearest(query, 1e9f, slack);
+        for (float epsilon : {1.f, 4.f}) {
+            const FeatureMatch near = index.nearest(query, 1e9f, epsilon);
             REQUIRE(near.row >= 0);
-            CHECK(near.squared <= exact.squared * (1 + slack) * 1.0001f);
+            CHECK(near.squared <= exact.squared * (1 + epsilon) * 1.0001f);
         }
     }
 }

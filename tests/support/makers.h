@@ -16,11 +16,7 @@
 namespace vdbsynth::test {
 
 inline BrickField fieldFrom(const Index3& size, const std::function<float(const Index3&)>& value) {
-    return BrickField::generate(IndexBox::fromSize(size), {}, [&](const IndexBox& brick, float* samples) {
-        for (int x = brick.min.x; x <= brick.max.x; ++x)
-            for (int y = brick.min.y; y <= brick.max.y; ++y)
-                for (int z = brick.min.z; z <= brick.max.z; ++z) *samples++ = value({x, y, z});
-    });
+    return BrickField::fromVoxels(IndexBox::fromSize(size), {}, value);
 }
 
 /// Independent random values in [-1, 1].

@@ -2,7 +2,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "libvdbsynth/surface/curvature_direction.h"
 #include "tests/support/shapes.h"
 
 using namespace vdbsynth;
@@ -64,24 +63,6 @@ TEST_CASE("directionField: the same for any threads, stops when asked to", "[sur
     RunContext stopped;
     stopped.cancel = &stop;
     CHECK(test::thrownBy([&] { directionField(shell, given, stopped); }).code == int(ErrorCode::Cancelled));
-}
-
-TEST_CASE("curvatureDirections: along a cylinder, round nothing, and silent on a sphere", "[surface]") {
-    const SurfaceShell cylinder = surfaceShell(*test::cylinderField(40, 12));
-    const std::vector<Vec3f> along = curvatureDirections(cylinder);
-    std::size_t clear = 0;
-    int up = 0;
-    for (const Vec3f& d : along) {
-        if (length(d) == 0) continue;
-        ++clear;
-        CHECK(std::abs(d.z) > 0.97f);
-        up += d.z > 0;
-    }
-    CHECK(clear > cylinder.size() * 9 / 10);
-    CHECK((up == 0 || std::size_t(up) == clear));  // one sign
-    const SurfaceShell plane = surfaceShell(*test::planeField(32, 15.4));
-    const std::vector<Vec3f> none = curvatureDirections(plane);
-    CHECK(std::all_of(none.begin(), none.end(), [](const Vec3f& d) { return length(d) == 0; }));
 }
 
 TEST_CASE("directionField: a part of the surface that an axis meets steeply still follows it", "[surface]") {

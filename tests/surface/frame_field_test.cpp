@@ -25,35 +25,6 @@ Vec3f around(const Vec3f& p) {
 
 }  // namespace
 
-TEST_CASE("sweepDistance: along an axis of a plane it is that coordinate", "[surface]") {
-    const FrameField frames = framesOver(test::planeField(40, 20.5), [](const Vec3f&) {
-        return Vec3f{1, 0, 0};
-    });
-    const auto& s = frames.sweep().distance;
-    const float first = s.front() - frames.shell().point.front().x;
-    for (std::size_t i = 0; i < s.size(); ++i)
-        CHECK(s[i] - frames.shell().point[i].x == Approx(first).margin(0.1));
-    CHECK(frames.sweep().cut == 0);
-}
-
-TEST_CASE("sweepDistance: neighbours behind come earlier, but for the cut a rotating field must have",
-          "[surface][property]") {
-    const FrameField frames = framesOver(test::cylinderField(40, 13), around);
-    const SurfaceShell& shell = frames.shell();
-    std::size_t behind = 0, earlier = 0;
-    for (std::uint32_t i = 0; i < shell.size(); ++i)
-        for (std::uint32_t k = shell.begin[i]; k < shell.begin[i + 1]; ++k) {
-            const std::uint32_t j = shell.neighbours[k];
-            if (dot(frames.directions().tangent[i], shell.point[j] - shell.point[i]) > -0.5f) continue;
-            ++behind;
-            earlier += frames.sweep().distance[j] < frames.sweep().distance[i];
-        }
-    REQUIRE(behind > 1000);
-    CHECK(double(earlier) / double(behind) > 0.96);
-    CHECK(frames.sweep().cut > 0.001);
-    CHECK(frames.sweep().cut < 0.06);
-}
-
 TEST_CASE("FrameField: orthonormal and right-handed in the whole band, normal along the gradient",
           "[surface][property]") {
     const FrameField frames = framesOver(test::sphereField(40, 12), around);

@@ -106,21 +106,21 @@ TEST_CASE("optimizeTexture: a mask keeps sources inside it, two exemplars are bo
 TEST_CASE("optimizeTexture: each place from the exemplar that is asked for there", "[synth][property]") {
     const auto one = shared(test::ballsField({40, 40, 40}, 6, 6.f, 20)),
                two = shared(test::ballsField({36, 48, 40}, 7, 6.f, 20));
-    const BrickField which = test::fieldFrom({64, 64, 40}, [](const Index3& p) {
+    const BrickField exemplarMap = test::fieldFrom({64, 64, 40}, [](const Index3& p) {
         return p.x + p.y < 64 ? 0.f : p.y < 40 ? 1.f : -1.f;
     });
     BlockSynthesisOptions options = optionsFor({64, 64, 40}, 8, 2);
-    options.which = &which;
+    options.exemplarMap = &exemplarMap;
     options.grows = std::array<bool, 3>{true, true, false};
     const PatchMap map = optimizeTexture({one, two}, options).map;
     for (std::size_t i = 0; i < map.source.size(); ++i) {
         const Index3 origin = map.originOf(map.place(i)), middle = origin + Index3{3, 3, 3};
         // A cell copies by a patch of 8 that it lies inside: what is asked for in that patch's middle counts.
-        const int asked = int(which.at(middle));
+        const int asked = int(exemplarMap.at(middle));
         bool everywhere = asked >= 0;
         for (const int away : {-2, 2})
-            everywhere = everywhere && which.inside(middle + Index3{away, away, 0}) == float(asked) &&
-                         which.inside(middle + Index3{0, away, 0}) == float(asked);
+            everywhere = everywhere && exemplarMap.inside(middle + Index3{away, away, 0}) == float(asked) &&
+                         exemplarMap.inside(middle + Index3{0, away, 0}) == float(asked);
         if (everywhere) REQUIRE(map.exemplar[i] == asked);
         REQUIRE(map.source[i].z == origin.z);
     }

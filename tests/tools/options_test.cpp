@@ -110,7 +110,7 @@ TEST_CASE("inFlags: a field in backquotes becomes the flag of the running comman
           "--longest-run 3: must be from 0.01 to 1");
     CHECK(inFlags("use a smaller `size` or larger voxels", "synth") ==
           "use a smaller --size or larger voxels");
-    CHECK(inFlags("`SynthOptions::which` and `heights.pixelSize`", "synth") ==
+    CHECK(inFlags("`SynthOptions::exemplarMap` and `heights.pixelSize`", "synth") ==
           "--exemplar-map and --pixel-size");
     CHECK(inFlags("over `maxMemory`", "make") == "over --max-memory");
     CHECK(inFlags("with `imageAsVolume`", "convert") == "with --as volume");

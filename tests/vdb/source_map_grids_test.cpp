@@ -3,9 +3,9 @@
 #include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
-#include "libvdbsynth/pipeline/analogy.h"
-#include "libvdbsynth/pipeline/make.h"
-#include "libvdbsynth/pipeline/synth.h"
+#include "libvdbsynth/pipeline/analogy/analogy.h"
+#include "libvdbsynth/pipeline/make/make.h"
+#include "libvdbsynth/pipeline/synth/synth.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "tests/support/makers.h"
 #include "tests/support/temporary_folder.h"
@@ -221,14 +221,13 @@ TEST_CASE("sourceMapFrom: hostile lattices are refused before anything is alloca
     // 2^28 blocks along each axis, whose product is 0 in 64 bits.
     const GridPtr wraps = grids[2]->deepCopyGrid();
     for (const auto& [name, value] :
-         {std::pair<const char*, const char*>{"target_box",
-                                              "-134217728,-134217728,-134217728,134217727,"
-                                              "134217727,134217727"},
+         {std::pair<const char*, const char*>{
+              "target_box", "-134217728,-134217728,-134217728,134217727,134217727,134217727"},
           {"patch", "1"},
           {"stride", "1"}})
         wraps->insertMeta(std::string("vdbsynth:map:") + name, openvdb::StringMetadata(value));
     CHECK(test::contains(test::thrownBy([&] { sourceMapFrom("m.vdb", withMain(grids, wraps)); }).message,
-                         "blocks where"));
+                         "blocks instead of"));
     const GridPtr bad = grids[2]->deepCopyGrid();
     bad->insertMeta("vdbsynth:map:overhang", openvdb::StringMetadata("4294967296,0,0"));
     CHECK(test::contains(test::thrownBy([&] { sourceMapFrom("m.vdb", withMain(grids, bad)); }).message,

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "libvdbsynth/vdb/bricks.h"
-#include "libvdbsynth/vdb/mesh_conversion.h"
+#include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
 #include "tests/support/comma_locale.h"
 #include "tests/support/makers.h"
 #include "tests/support/temporary_folder.h"

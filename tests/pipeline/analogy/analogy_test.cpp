@@ -1,0 +1,189 @@
+#include "libvdbsynth/pipeline/analogy/analogy.h"
+
+#include <openvdb/openvdb.h>
+#include <catch2/catch.hpp>
+
+#include "libvdbsynth/grid/occupancy.h"
+#include "libvdbsynth/pipeline/make/make.h"
+#include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
+#include "libvdbsynth/vdb/source_map_grids.h"
+#include "tests/support/makers.h"
+
+using namespace vdbsynth;
+
+namespace {
+
+MakeOptions makeOptions(const std::string& kind, int resolution) {
+    openvdb::initialize();
+    MakeOptions options;
+    options.exemplar.kind = kind;
+    options.exemplar.resolution = resolution;
+    return options;
+}
+
+ModelPair pairOf(const std::string& kind, int resolution = 64) {
+    return makePair(makeOptions(kind, resolution));
+}
+
+LevelSet tori() {
+    return makeModel(makeOptions("three-tori", 72));
+}
+
+DirectionSource direction(const std::string& text) {
+    DirectionSource source;
+    REQUIRE(parseDirection(text, source));
+    return source;
+}
+
+AnalogyResult applied(const ModelPair& pair, const LevelSet& target, AnalogyOptions options = {},
+                      const RunContext& ctx = {}) {
+    if (options.direction.kind == DirectionSource::Kind::Automatic) options.direction = direction("around:z");
+    return makeAnalogyModel({{&pair.plain, &pair.textured}}, target, options, ctx);
+}
+
+}  // namespace
+
+TEST_CASE("parseDirection: what it takes and what it does not", "[pipeline]") {
+    CHECK(direction("axis:-y").axis.y == -1);
+    CHECK(direction("around:x").kind == DirectionSource::Kind::Around);
+    CHECK(direction("radial").kind == DirectionSource::Kind::Radial);
+    CHECK(direction("curvature").kind == DirectionSource::Kind::Automatic);
+    DirectionSource source;
+    for (const char* text : {"axis", "axis:", "axis:w", "axis:xy", "round:x", "axis:--x", ""})
+        CHECK_FALSE(parseDirection(text, source));
+}
+
+TEST_CASE("makeAnalogyModel: hollowing makes a shell of the pair's thickness, a valid level set",
+          "[pipeline]") {
+    const ModelPair pair = pairOf("hollow");
+    const LevelSet target = tori();
+    const AnalogyResult result = applied(pair, target);
+    // The plate is about 4.8 thick and the tubes 7.2 in radius, so what is left is the core: (2.4 / 7.2)^2.
+    const double share = solidVoxels(*result.model.grid) / solidVoxels(*target.grid);
+    CHECK(share > 0.80);
+    CHECK(share < 0.95);
+    const BandQuality band = measureBand(*result.model.grid);
+    CHECK(band.gradientErrorMean < 0.05);
+    CHECK(band.missingNeighbours == 0);
+    CHECK(band.finite);
+    CHECK(result.model.domain == target.domain);
+    const std::vector<GridPtr> grids = sourceMapGrids(result.map, *result.model.grid);
+    REQUIRE(grids.size() == 4);
+    CHECK(grids[0]->getName() == "source");
+    CHECK(grids[0]->activeVoxelCount() > activeVoxels(*result.model.grid) / 2);
+    CHECK(result.reach > 4);
+}
+
+TEST_CASE("makeAnalogyModel: strength 0 and an empty mask leave the target as it is", "[pipeline]") {
+    const ModelPair pair = pairOf("dilation");
+    const LevelSet target = tori();
+    AnalogyOptions none;
+    none.strength = 0;
+    const double before = solidVoxels(*target.grid);
+    CHECK(solidVoxels(*applied(pair, target, none).model.grid) == Approx(before).epsilon(0.003));
+    AnalogyOptions masked;
+    const auto empty = openvdb::FloatGrid::create(0.f);
+    empty->setTransform(target.grid->transform().copy());
+    masked.mask = empty;
+    CHECK(solidVoxels(*applied(pair, target, masked).model.grid) == Approx(before).epsilon(0.003));
+    CHECK(solidVoxels(*applied(pair, target).model.grid) > 1.5 * before);
+}
+
+TEST_CASE("makeAnalogyModel: attributes of the textured model are transferred, directions are written",
+          "[pipeline]") {
+    ModelPair pair = pairOf("dilation");
+    auto heat = openvdb::FloatGrid::create(0.f);
+    heat->setName("heat");
+    heat->setTransform(pair.textured.grid->transform().copy());
+    for (auto it = pair.textured.grid->cbeginValueOn(); it; ++it) heat->tree().setValueOn(it.getCoord(), 3.f);
+    pair.textured.attributes.push_back(heat);
+    AnalogyOptions options;
+    options.keepDirections = true;
+    options.scale = 1.25;
+    const AnalogyResult result = applied(pair, tori(), options);
+    REQUIRE(result.model.attributes.size() == 1);
+    const auto carried = openvdb::gridPtrCast<openvdb::FloatGrid>(result.model.attributes[0]);
+    REQUIRE(carried);
+    CHECK(carried->activeVoxelCount() > 1000);
+    for (auto it = carried->cbeginValueOn(); it; ++it) REQUIRE(it.getValue() == 3.f);
+    REQUIRE(result.directions);
+    CHECK(result.directions->isType<openvdb::Vec3SGrid>());
+    CHECK(sourceMapGrids(result.map, *result.model.grid).size() == 5);  // source_scale too
+}
+
+TEST_CASE("makeAnalogyModel: the same bits for any threads", "[pipeline][tsan]") {
+    const ModelPair pair = pairOf("grooves");
+    const LevelSet target = tori();
+    RunContext one, four;
+    one.threads = 1;
+    four.threads = 4;
+    CHECK(levelSetHash(*applied(pair, target, {}, one).model.grid) ==
+          levelSetHash(*applied(pair, target, {}, four).model.grid));
+}
+
+TEST_CASE("makeAnalogyModel: every refusal says what to do", "[pipeline]") {
+    const ModelPair pair = pairOf("dilation");
+    const LevelSet target = tori();
+    const auto thrown = [&](const LevelSet& plain, const LevelSet& textured, const LevelSet& onto,
+                            const AnalogyOptions& options) {
+        return test::thrownBy([&] { makeAnalogyModel({{&plain, &textured}}, onto, options); });
+    };
+    AnalogyOptions options;
+    options.direction = direction("axis:z");
+    MakeOptions fine = makeOptions("dilation", 64);
+    fine.voxelSize = 0.5;
+    const test::Thrown sizes = thrown(pair.plain, makePair(fine).textured, target, options);
+    CHECK(sizes.code == int(ErrorCode::ShapeMismatch));
+    CHECK(test::contains(sizes.message, "`voxelSize`"));
+    AnalogyOptions strong = options;
+    strong.strength = 2;
+    CHECK(thrown(pair.plain, pair.textured, target, strong).code == int(ErrorCode::InvalidOption));
+    AnalogyOptions large = options;
+    large.scale = 9;
+    CHECK(thrown(pair.plain, pair.textured, target, large).code == int(ErrorCode::InvalidOption));
+    // A plane has no curvature to follow.
+    const test::Thrown flat = thrown(pair.plain, pair.textured, pairOf("pits").plain, {});
+    CHECK(flat.code == int(ErrorCode::Unusable));
+    CHECK(test::contains(flat.message, "`direction`"));
+    AnalogyOptions memory = options;
+    RunContext little;
+    little.maxMemory = 1000;
+    CHECK(test::thrownBy([&] { applied(pair, target, memory, little); }).code == int(ErrorCode::Memory));
+    std::atomic<bool> stop{true};
+    RunContext stopped;
+    stopped.cancel = &stop;
+    CHECK(test::thrownBy([&] { applied(pair, target, {}, stopped); }).code == int(ErrorCode::Cancelled));
+}
+
+TEST_CASE("makeAnalogyModel: a target thinner than a neighbourhood is worked on, or said to be too thin",
+          "[pipeline]") {
+    AnalogyOptions options;
+    options.direction = direction("axis:x");
+    const auto plate = [](float thickness) {
+        LevelSet model;
+        model.grid = meshToLevelSet(test::boxMesh({0, 0, 0}, {40, 40, thickness}), 1, 3, "plate");
+        model.domain = solidBox(*model.grid, "plate");
+        return model;
+    };
+    // Two voxels thick, dilated by four.
+    const ModelPair dilation = pairOf("dilation");
+    const LevelSet thin = plate(2);
+    const AnalogyResult grown = makeAnalogyModel({{&dilation.plain, &dilation.textured}}, thin, options);
+    const openvdb::FloatGrid& made = *grown.model.grid;
+    CHECK(made.tree().getValue({20, 20, 1}) < 0);
+    double top = 0;
+    while (made.tree().getValue({20, 20, int(top)}) < 0) ++top;
+    CHECK(top - 2 == Approx(4).margin(1));
+    const ModelPair grooves = pairOf("grooves");
+    const LevelSet small = [&] {
+        LevelSet model;
+        model.grid = meshToLevelSet(test::boxMesh({0, 0, 0}, {3, 3, 3}), 1, 3, "island");
+        model.domain = solidBox(*model.grid, "island");
+        return model;
+    }();
+    const test::Thrown gone = test::thrownBy([&] {
+        makeAnalogyModel({{&grooves.plain, &grooves.textured}}, small, options);
+    });
+    CHECK(gone.code == int(ErrorCode::EmptyInput));
+    CHECK(test::contains(gone.message, "smaller voxels for the target"));
+}

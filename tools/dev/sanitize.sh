@@ -13,5 +13,5 @@ cmake --preset "$preset" >/dev/null
 cmake --build --preset "$preset"
 export ASAN_OPTIONS=detect_leaks=0 TSAN_OPTIONS="suppressions=$PWD/tools/dev/tsan.supp" UBSAN_OPTIONS=print_stacktrace=1
 # The stock TBB is not built for the thread sanitizer, so it sees only the rooms whose tests use our own loops.
-[ "$preset" = tsan ] && set -- -L 'base|grid|measure|search|synth|analogy|procedural' "$@"
+[ "$preset" = tsan ] && set -- -L 'base|grid|distance|measure|search|synth|analogy|procedural' "$@"
 ctest --test-dir "build/$preset" --output-on-failure -LE 'lint|consumer' "$@"

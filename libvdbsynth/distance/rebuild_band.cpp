@@ -61,7 +61,7 @@ BrickField rebuiltPart(const FieldReader& read, const IndexBox& part, const Rebu
     const int rounds = int(std::ceil(options.halfWidth));
     const IndexBox reach = part.expanded(rounds + 3);
     const std::shared_ptr<const BrickField> field = read(samplesFor(reach));
-    const Mesh mesh = zeroLevel(*field, reach, Facing::Inward, ctx);
+    const Mesh mesh = zeroLevel(*field, reach, options.facing, ctx);
     if (mesh.faceCount() == 0)
         return BrickField(part, field->at(part.min) < 0 ? -options.halfWidth : options.halfWidth);
     const BrickField distance = meshDistance(mesh, part.expanded(rounds + 1), options.halfWidth, ctx);
@@ -76,9 +76,11 @@ BrickField rebuiltPart(const FieldReader& read, const IndexBox& part, const Rebu
 
 }  // namespace
 
-void rebuildBand(const FieldReader& read, const IndexBox& box, const RebuildOptions& options,
+void rebuildBand(const FieldReader& read, const IndexBox& box, const RebuildOptions& given,
                  const PartTaker& take, const RunContext& ctx) {
     const std::vector<IndexBox> parts = partsOf(box);
+    RebuildOptions options = given;
+    if (parts.size() > 1) options.facing = Facing::Inward;
     Stage stage(ctx, "rebuilding the narrow band", parts.size());
     constexpr std::size_t kBatch = 8;  // parts between two looks at the clock
     for (std::size_t first = 0; first < parts.size(); first += kBatch) {

@@ -1,5 +1,6 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/distance/zero_level.h"
 #include "libvdbsynth/grid/brick_field.h"
 
 #include <functional>
@@ -14,6 +15,9 @@ struct RebuildOptions {
     /// `band`; false: only its zero level is meant.
     bool keepDistances = false;
     float band = 3;  ///< [voxels] where the field's own distances end
+    /// Of the faces that distances are measured to, where the band is rebuilt in one part (else Inward). It
+    /// decides the last bit of some distances, nothing else.
+    Facing facing = Facing::Inward;
 };
 
 /// Gives a field that covers a box of index space at least, for as long as a part needs it.

@@ -38,6 +38,8 @@ FloatGridPtr rebuildLevelSet(const openvdb::FloatGrid& field, float halfWidth, c
     RebuildOptions options;
     options.halfWidth = halfWidth;
     options.voxelSize = float(voxelSizeOf(field));
+    // Level sets were always measured so; other fields, and those in parts, from inward faces.
+    if (field.getGridClass() == openvdb::GRID_LEVEL_SET) options.facing = Facing::Outward;
     const FieldReader read = [&](const IndexBox& box) {
         auto part = std::make_shared<BrickField>(
             gatherBricks(field, box, 1.f, std::numeric_limits<float>::infinity(), ctx));

@@ -9,19 +9,13 @@
 #include "libvdbsynth/grid/occupancy.h"
 #include "libvdbsynth/math/lattice.h"
 #include "tests/support/makers.h"
+#include "tests/support/solids.h"
 
 using namespace vdbsynth;
+using test::inBall;
+using test::solidFrom;
 
 namespace {
-
-Occupancy solidFrom(const Index3& size, const std::function<bool(const Index3&)>& inside) {
-    return Occupancy::fromField(
-        test::fieldFrom(size, [&](const Index3& p) { return inside(p) ? -1.f : 1.f; }));
-}
-
-bool inBall(const Index3& p, double x, double y, double z, double radius) {
-    return (p.x - x) * (p.x - x) + (p.y - y) * (p.y - y) + (p.z - z) * (p.z - z) < radius * radius;
-}
 
 Occupancy noise(const Index3& size, double share) {
     return solidFrom(size, [=](const Index3& p) {

@@ -5,17 +5,10 @@
 #include <catch2/catch.hpp>
 
 #include "tests/support/makers.h"
+#include "tests/support/solids.h"
 
 using namespace vdbsynth;
-
-namespace {
-
-Occupancy solidFrom(const Index3& size, const std::function<bool(const Index3&)>& inside) {
-    return Occupancy::fromField(
-        test::fieldFrom(size, [&](const Index3& p) { return inside(p) ? -1.f : 1.f; }));
-}
-
-}  // namespace
+using test::solidFrom;
 
 TEST_CASE("twoPointCorrelation: slabs have a triangle wave across and a constant along",
           "[measure][oracle]") {

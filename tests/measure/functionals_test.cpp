@@ -6,21 +6,13 @@
 #include <catch2/catch.hpp>
 
 #include "tests/support/makers.h"
+#include "tests/support/solids.h"
 
 using namespace vdbsynth;
+using test::inBall;
+using test::solidFrom;
 
-namespace {
-
-Occupancy solidFrom(const Index3& size, const std::function<bool(const Index3&)>& inside) {
-    return Occupancy::fromField(
-        test::fieldFrom(size, [&](const Index3& p) { return inside(p) ? -1.f : 1.f; }));
-}
-
-bool inBall(const Index3& p, double x, double y, double z, double radius) {
-    return (p.x - x) * (p.x - x) + (p.y - y) * (p.y - y) + (p.z - z) * (p.z - z) < radius * radius;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("eulerCharacteristic: ball 1, two balls 2, shell 2, ring 0, none 0", "[measure][oracle]") {
     const Index3 size{40, 40, 80};

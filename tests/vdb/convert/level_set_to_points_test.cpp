@@ -4,25 +4,15 @@
 #include <catch2/catch.hpp>
 
 #include "libvdbsynth/vdb/bricks.h"
+#include "tests/support/level_sets.h"
 #include "tests/support/makers.h"
 
 #include <atomic>
 
 using namespace vdbsynth;
+using test::ball;
 
 namespace {
-
-// A ball of radius 10 about the origin, in voxels of a half.
-FloatGridPtr ball() {
-    openvdb::initialize();
-    const BrickField field = test::fieldFrom({49, 49, 49}, [](const Index3& p) {
-        return float(std::clamp(std::hypot(p.x - 24, p.y - 24, p.z - 24) - 20, -3.0, 3.0));
-    });
-    const FloatGridPtr grid = scatterBricks(field, {-24, -24, -24}, 0.5f, 3.f);
-    grid->setTransform(openvdb::math::Transform::createLinearTransform(0.5));
-    grid->setGridClass(openvdb::GRID_LEVEL_SET);
-    return grid;
-}
 
 PointCloud pointsOf(const openvdb::FloatGrid& grid, double spacing, const RunContext& ctx = {}) {
     PointOptions options;

@@ -91,6 +91,8 @@ MeshSummary summarize(const Mesh& mesh) {
         summary.signedVolume += dot(a, cross(b, c)) / 6;
         summary.area += length(cross(b - a, c - a)) / 2;
     }
+    summary.boxMin = summary.boxMin + mesh.origin;
+    summary.boxMax = summary.boxMax + mesh.origin;
     countEdges(mesh, summary);
     return summary;
 }

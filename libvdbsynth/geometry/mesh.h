@@ -14,10 +14,11 @@ using Quad = std::array<std::uint32_t, 4>;
 
 /// A polygon mesh of triangles and quads. Faces run counter-clockwise seen from outside.
 struct Mesh {
-    std::vector<Vec3f> points;        ///< [vertices] world space
+    std::vector<Vec3f> points;        ///< [vertices] world space, relative to `origin`
     std::vector<Triangle> triangles;  ///< [triangles x 3] indices into points
     std::vector<Quad> quads;          ///< [quads x 4] indices into points
     Attributes attributes;            ///< of the vertices
+    Vec3d origin;  ///< [world] zero, but where coordinates are too large for floats (local_points.h)
 
     std::size_t faceCount() const { return triangles.size() + quads.size(); }
 };
@@ -31,7 +32,7 @@ struct MeshSummary {
     std::size_t misorientedEdges = 0;  ///< edges that both their faces traverse in the same direction
     double signedVolume = 0;           ///< [world^3] by the divergence theorem about the box's centre
     double area = 0;                   ///< [world^2]
-    Vec3d boxMin, boxMax;              ///< [world] of the points that faces use
+    Vec3d boxMin, boxMax;              ///< [world] of the points that faces use, the origin included
 
     bool closedManifold() const {
         return faces > 0 && openEdges == 0 && nonManifoldEdges == 0 && misorientedEdges == 0;

@@ -10,9 +10,10 @@ namespace vdbsynth {
 
 /// Points with unit normals that face out of the solid.
 struct PointCloud {
-    std::vector<Vec3f> points;   ///< [points] world space
+    std::vector<Vec3f> points;   ///< [points] world space, relative to `origin`
     std::vector<Vec3f> normals;  ///< [points], or empty
     Attributes attributes;       ///< of the points
+    Vec3d origin;  ///< [world] zero, but where coordinates are too large for floats (local_points.h)
 };
 
 /// Spacing [world] of every point: the root mean square distance to its 6 nearest, over root 2, which on an

@@ -10,18 +10,24 @@
 namespace vdbsynth {
 namespace {
 
-void checkFaces(const std::string& path, const Mesh& mesh) {
-    const auto check = [&](std::uint32_t index) {
-        if (index >= mesh.points.size())
-            throw Error(ErrorCode::BadData, path + ": a face uses vertex " + std::to_string(index) + " of " +
-                                                std::to_string(mesh.points.size()) + " (counting from 0)");
-    };
-    for (const Triangle& t : mesh.triangles)
-        for (std::uint32_t i : t) check(i);
-    for (const Quad& q : mesh.quads)
-        for (std::uint32_t i : q) check(i);
-    if (mesh.faceCount() == 0)
-        throw Error(ErrorCode::EmptyInput, path + ": no faces; a mesh with at least one face is needed");
+MeshContent readFormat(MeshFormat format, const std::string& path, const std::string& content,
+                       const RunContext& ctx) {
+    switch (format) {
+        case MeshFormat::Obj:
+            return readObj(path, content, ctx);
+        case MeshFormat::Ply:
+            return readPly(path, content, ctx);
+        case MeshFormat::Stl:
+            return readStl(path, content, ctx);
+        case MeshFormat::Off:
+            return readOff(path, content, ctx);
+        case MeshFormat::Medit:
+            return readMedit(path, content, ctx);
+        case MeshFormat::Gltf:
+        case MeshFormat::Glb:
+            return readGltf(path, content, ctx);
+    }
+    return {};
 }
 
 bool formatOfExtension(const std::string& extension, MeshFormat& format) {
@@ -56,29 +62,7 @@ Mesh readMesh(const std::string& path, const RunContext& ctx) {
     const std::string content = readWholeFile(path);
     stage.advance();
     if (content.empty()) throw Error(ErrorCode::BadData, path + ": the file is empty");
-    Mesh mesh;
-    switch (format) {
-        case MeshFormat::Obj:
-            mesh = readObj(path, content);
-            break;
-        case MeshFormat::Ply:
-            mesh = readPly(path, content);
-            break;
-        case MeshFormat::Stl:
-            mesh = readStl(path, content);
-            break;
-        case MeshFormat::Off:
-            mesh = readOff(path, content);
-            break;
-        case MeshFormat::Medit:
-            mesh = readMedit(path, content);
-            break;
-        case MeshFormat::Gltf:
-        case MeshFormat::Glb:
-            mesh = readGltf(path, content);
-            break;
-    }
-    checkFaces(path, mesh);
+    Mesh mesh = meshOf(path, readFormat(format, path, content, ctx), ctx);
     stage.advance();
     return mesh;
 }

@@ -1,24 +1,28 @@
 #include "libvdbsynth/io/point_file.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/geometry/local_points.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/readers/gzip.h"
 #include "libvdbsynth/io/readers/point_readers.h"
 #include "libvdbsynth/io/readers/whole_file.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <fstream>
 
 namespace vdbsynth {
 namespace {
 
-bool isFinite(const Vec3f& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+template <typename T>
+bool isFinite(const Vec3<T>& v) {
+    const auto fits = [](T value) { return std::abs(double(value)) <= double(FLT_MAX); };
+    return fits(v.x) && fits(v.y) && fits(v.z);
 }
 
 // Removes points that are not finite, and all normals if one point lacks its normal.
-std::size_t clean(PointCloud& cloud) {
+std::size_t clean(PointContent& cloud) {
     bool normals = cloud.normals.size() == cloud.points.size();
     std::size_t kept = 0;
     std::vector<std::size_t> rows;
@@ -68,12 +72,17 @@ PointFile readPoints(const std::string& path, const RunContext& ctx) {
     stage.advance();
     if (content.empty()) throw Error(ErrorCode::BadData, path + ": the file is empty");
     PointFile file;
-    file.cloud = extension == "ply"   ? readPlyPoints(path, content)
-                 : extension == "pcd" ? readPcd(path, content)
-                                      : readRows(path, content);
-    file.invalid = clean(file.cloud);
-    if (file.cloud.points.empty())
+    PointContent points = extension == "ply"   ? readPlyPoints(path, content, ctx)
+                          : extension == "pcd" ? readPcd(path, content, ctx)
+                                               : readRows(path, content, ctx);
+    file.invalid = clean(points);
+    if (points.points.empty())
         throw Error(ErrorCode::EmptyInput, path + ": no points with finite coordinates");
+    LocalPoints local = localPoints(points.points);
+    file.cloud.points = std::move(local.points);
+    file.cloud.origin = local.origin;
+    file.cloud.normals = std::move(points.normals);
+    file.cloud.attributes = std::move(points.attributes);
     stage.advance();
     return file;
 }

@@ -1,19 +1,21 @@
 #pragma once
+#include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/geometry/mesh.h"
+#include "libvdbsynth/io/readers/mesh_content.h"
 
 #include <string>
 
 namespace vdbsynth {
 
-// One reader per format, behind readMesh (mesh_file.h), which checks the indices and faces they return.
-// `path` is for messages, `content` is the whole file.
+// One reader per format, behind readMesh (mesh_file.h), which checks the corners and faces they return.
+// `path` is for messages, `content` is the whole file. What a reader guesses or leaves out is a message.
 // @throw Error BadData
-Mesh readGltf(const std::string& path, const std::string& content);
-Mesh readMedit(const std::string& path, const std::string& content);
-Mesh readObj(const std::string& path, const std::string& content);
-Mesh readOff(const std::string& path, const std::string& content);
-Mesh readPly(const std::string& path, const std::string& content);
-Mesh readStl(const std::string& path, const std::string& content);
+MeshContent readGltf(const std::string& path, const std::string& content, const RunContext& ctx = {});
+MeshContent readMedit(const std::string& path, const std::string& content, const RunContext& ctx = {});
+MeshContent readObj(const std::string& path, const std::string& content, const RunContext& ctx = {});
+MeshContent readOff(const std::string& path, const std::string& content, const RunContext& ctx = {});
+MeshContent readPly(const std::string& path, const std::string& content, const RunContext& ctx = {});
+MeshContent readStl(const std::string& path, const std::string& content, const RunContext& ctx = {});
 
 // The content of a .glb or .gltf file. The same mesh gives the same bytes.
 std::string gltfBytes(const Mesh& mesh, bool binary);

@@ -82,7 +82,7 @@ class Reader {
 public:
     Reader(const std::string& path, const tinygltf::Model& model) : mPath(path), mModel(model) {}
 
-    Mesh read() {
+    MeshContent read() {
         std::vector<int> roots;
         if (!mModel.scenes.empty()) {
             const std::size_t scene = mModel.defaultScene >= 0 ? std::size_t(mModel.defaultScene) : 0;
@@ -211,13 +211,8 @@ private:
             const std::size_t first = mMesh.points.size();
             if (first + count > 0xfffffffeu) refuse(mPath, "has over four billion vertices");
             for (std::size_t i = 0; i < count; ++i) {
-                const float p[3] = {float(places[3 * i]), float(places[3 * i + 1]), float(places[3 * i + 2])};
                 mMesh.points.push_back(
-                    cast<float>(transformed(matrix, {double(p[0]), double(p[1]), double(p[2])})));
-                const Vec3f& made = mMesh.points.back();
-                if (!std::isfinite(made.x) || !std::isfinite(made.y) || !std::isfinite(made.z))
-                    refuse(mPath, "vertex " + std::to_string(first + i) +
-                                      " has a coordinate that is not a finite number");
+                    transformed(matrix, {places[3 * i], places[3 * i + 1], places[3 * i + 2]}));
             }
             readAttributes(primitive, first, count);
             std::vector<double> corners;
@@ -245,7 +240,7 @@ private:
             Triangle t{corner(i), corner(i + 1), corner(i + 2)};
             if (mode == TINYGLTF_MODE_TRIANGLE_FAN) t = {corner(0), corner(i + 1), corner(i + 2)};
             if ((mode == TINYGLTF_MODE_TRIANGLE_STRIP && i % 2 == 1) != mirrored) std::swap(t[0], t[1]);
-            if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) mMesh.triangles.push_back(t);
+            if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) mMesh.polygons.add(t.data(), 3);
         }
     }
 
@@ -286,7 +281,7 @@ private:
             }
     }
 
-    Mesh finished() {
+    MeshContent finished() {
         for (auto& [name, attribute] : mAttributes) {
             attribute.values.resize(mMesh.points.size() * attribute.width, mMissing[name]);
             mMesh.attributes.push_back(std::move(attribute));
@@ -296,7 +291,7 @@ private:
 
     const std::string& mPath;
     const tinygltf::Model& mModel;
-    Mesh mMesh;
+    MeshContent mMesh;
     std::map<std::string, Attribute> mAttributes;
     std::map<std::string, float> mMissing;
 };
@@ -359,7 +354,7 @@ tinygltf::FsCallbacks fileAccess(Folder& folder) {
 
 }  // namespace
 
-Mesh readGltf(const std::string& path, const std::string& content) {
+MeshContent readGltf(const std::string& path, const std::string& content, const RunContext&) {
     tinygltf::TinyGLTF loader;
     loader.SetImageLoader(skipImage, nullptr);
     Folder folder{folderOf(path)};

@@ -63,12 +63,12 @@ void skipValues(TextScanner& scanner, std::int64_t count) {
 
 }  // namespace
 
-Mesh readMedit(const std::string& path, const std::string& content) {
+MeshContent readMedit(const std::string& path, const std::string& content, const RunContext&) {
     TextScanner scanner(path, content);
     if (scanner.word() != "MeshVersionFormatted")
         scanner.fail("not an ascii MEDIT file: it must begin with MeshVersionFormatted");
     scanner.whole();
-    Mesh mesh;
+    MeshContent mesh;
     std::vector<Tetrahedron> tetrahedra;
     while (!scanner.atEnd()) {
         const std::string word(scanner.word());
@@ -78,7 +78,7 @@ Mesh readMedit(const std::string& path, const std::string& content) {
         } else if (word == "Vertices") {
             const std::int64_t count = readCount(scanner, content, "vertices");
             for (std::int64_t i = 0; i < count; ++i) {
-                Vec3f p;
+                Vec3d p;
                 for (int axis = 0; axis < 3; ++axis) p[axis] = scanner.real();
                 scanner.real();  // a reference number
                 mesh.points.push_back(p);
@@ -86,11 +86,11 @@ Mesh readMedit(const std::string& path, const std::string& content) {
         } else if (word == "Triangles") {
             const std::int64_t count = readCount(scanner, content, "triangles");
             for (std::int64_t i = 0; i < count; ++i)
-                mesh.triangles.push_back(readCorners<3>(scanner, mesh.points.size()));
+                mesh.polygons.add(readCorners<3>(scanner, mesh.points.size()).data(), 3);
         } else if (word == "Quadrilaterals") {
             const std::int64_t count = readCount(scanner, content, "quadrilaterals");
             for (std::int64_t i = 0; i < count; ++i)
-                mesh.quads.push_back(readCorners<4>(scanner, mesh.points.size()));
+                mesh.polygons.add(readCorners<4>(scanner, mesh.points.size()).data(), 4);
         } else if (word == "Tetrahedra") {
             const std::int64_t count = readCount(scanner, content, "tetrahedra");
             for (std::int64_t i = 0; i < count; ++i)
@@ -102,7 +102,8 @@ Mesh readMedit(const std::string& path, const std::string& content) {
             skipValues(scanner, count);
         }
     }
-    if (mesh.faceCount() == 0) mesh.triangles = surfaceOf(tetrahedra);
+    if (mesh.polygons.sizes.empty())
+        for (const Triangle& face : surfaceOf(tetrahedra)) mesh.polygons.add(face.data(), 3);
     return mesh;
 }
 

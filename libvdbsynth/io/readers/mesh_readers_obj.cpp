@@ -17,12 +17,12 @@ namespace vdbsynth {
 namespace {
 
 // Vertices with the colours that some programs append: they count only if every line is "v x y z r g b".
-void readVertexLines(const std::string& path, const std::string& content, Mesh& mesh) {
+void readVertexLines(const std::string& path, const std::string& content, MeshContent& mesh) {
     TextScanner scanner(path, content);
     std::vector<AttributeColumn> colour{{"red", 0, {}}, {"green", 0, {}}, {"blue", 0, {}}};
     while (!scanner.atEnd()) {
         if (scanner.word() == "v") {
-            Vec3f p;
+            Vec3d p;
             for (int axis = 0; axis < 3; ++axis) {
                 const std::string_view number = scanner.wordOnLine();
                 if (number.empty()) scanner.fail("a vertex has fewer than three coordinates");
@@ -47,7 +47,7 @@ void readVertexLines(const std::string& path, const std::string& content, Mesh& 
 // Gives every vertex its texture coordinates; a vertex with several, at a seam, is duplicated for each.
 class SeamSplitter {
 public:
-    SeamSplitter(const std::string& path, Mesh& mesh, const std::vector<tinyobj::real_t>& texture)
+    SeamSplitter(const std::string& path, MeshContent& mesh, const std::vector<tinyobj::real_t>& texture)
         : mPath(path), mMesh(mesh), mTexture(texture) {
         mOf.assign(mesh.points.size(), kUnset);
     }
@@ -61,7 +61,7 @@ public:
         if (mOf[p] == texture) return std::uint32_t(point);
         const auto [at, fresh] = mSplit.try_emplace({point, texture}, std::uint32_t(mMesh.points.size()));
         if (fresh) {
-            mMesh.points.push_back(Vec3f(mMesh.points[p]));
+            mMesh.points.push_back(Vec3d(mMesh.points[p]));
             mSource.push_back({point, texture});
         }
         return at->second;
@@ -88,7 +88,7 @@ public:
 private:
     static constexpr int kUnset = -1;
     const std::string& mPath;
-    Mesh& mMesh;
+    MeshContent& mMesh;
     const std::vector<tinyobj::real_t>& mTexture;
     std::vector<int> mOf;  // texture coordinates of each point
     std::map<std::pair<int, int>, std::uint32_t> mSplit;
@@ -120,9 +120,9 @@ std::string withJoinedLines(const std::string& text) {
 
 }  // namespace
 
-Mesh readObj(const std::string& path, const std::string& text) {
+MeshContent readObj(const std::string& path, const std::string& text, const RunContext&) {
     const std::string content = withJoinedLines(text);
-    Mesh mesh;
+    MeshContent mesh;
     readVertexLines(path, content, mesh);
     tinyobj::attrib_t attributes;
     std::vector<tinyobj::shape_t> shapes;
@@ -145,7 +145,7 @@ Mesh readObj(const std::string& path, const std::string& text) {
                 corners.push_back(splitter.vertex(shape.mesh.indices[at + c].vertex_index,
                                                   shape.mesh.indices[at + c].texcoord_index));
             at += std::size_t(count);
-            appendPolygon(mesh, corners.data(), corners.size());
+            mesh.polygons.add(corners.data(), corners.size());
         }
     }
     splitter.finish();

@@ -17,7 +17,7 @@ void readColour(TextScanner& scanner, AttributeColumn& column) {
 
 }  // namespace
 
-Mesh readOff(const std::string& path, const std::string& content) {
+MeshContent readOff(const std::string& path, const std::string& content, const RunContext&) {
     TextScanner scanner(path, content);
     std::string_view header = scanner.word();
     const std::size_t suffix = header.size() >= 3 ? header.size() - 3 : 0;
@@ -42,10 +42,10 @@ Mesh readOff(const std::string& path, const std::string& content) {
                colours = header.find('C') != std::string_view::npos;
     std::vector<AttributeColumn> colour;
     if (colours) colour = {{"red", 0, {}}, {"green", 0, {}}, {"blue", 0, {}}};
-    Mesh mesh;
+    MeshContent mesh;
     mesh.points.reserve(std::size_t(vertices));
     for (std::int64_t i = 0; i < vertices; ++i) {
-        Vec3f p;
+        Vec3d p;
         p.x = scanner.real();
         p.y = scanner.real();
         p.z = scanner.real();
@@ -76,7 +76,7 @@ Mesh readOff(const std::string& path, const std::string& content) {
                              " does not exist (counting from 0)");
             corners.push_back(std::uint32_t(index));
         }
-        appendPolygon(mesh, corners.data(), corners.size());
+        mesh.polygons.add(corners.data(), corners.size());
         scanner.skipLine();  // colours
     }
     return mesh;

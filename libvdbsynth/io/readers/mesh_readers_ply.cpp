@@ -180,10 +180,10 @@ private:
     // Skipped properties may hold nan; the caller checks coordinates.
     double asciiReal() {
         const std::string_view word = mScanner.word();
-        float value = 0;
+        double value = 0;
         if (word.empty()) fail("the file is truncated");
         if (!parseAnyReal(word, value)) fail("\"" + std::string(word.substr(0, 40)) + "\" is not a number");
-        return double(value);
+        return value;
     }
 
     const std::string& mPath;
@@ -239,29 +239,27 @@ VertexLayout layoutOf(const Body& body, const Element& element) {
 }
 
 // Reads vertices; `normals` is null if not requested, and stays empty if there are none.
-void readVertices(Body& body, const Element& element, std::vector<Vec3f>& points, std::vector<Vec3f>* normals,
+void readVertices(Body& body, const Element& element, std::vector<Vec3d>& points, std::vector<Vec3f>* normals,
                   Attributes& attributes) {
     VertexLayout layout = layoutOf(body, element);
     points.reserve(std::size_t(element.count));
     for (std::int64_t v = 0; v < element.count; ++v) {
-        float row[6] = {};
+        double row[6] = {};
         for (std::size_t i = 0; i < element.properties.size(); ++i) {
             const int slot = layout.slot[i];
             if (slot < 0) {
                 body.skip(element.properties[i]);
                 continue;
             }
-            const float value = float(body.number(element.properties[i].value));
+            const double value = body.number(element.properties[i].value);
             if (slot >= 6) {
-                layout.columns[std::size_t(slot - 6)].values.push_back(value);
+                layout.columns[std::size_t(slot - 6)].values.push_back(float(value));
                 continue;
             }
             row[slot] = value;
-            if (!normals && slot < 3 && !std::isfinite(value))
-                body.fail("vertex " + std::to_string(v) + " has a coordinate that is not a finite number");
         }
         points.push_back({row[0], row[1], row[2]});
-        if (normals && layout.normals) normals->push_back({row[3], row[4], row[5]});
+        if (normals && layout.normals) normals->push_back({float(row[3]), float(row[4]), float(row[5])});
     }
     attributes = groupColumns(std::move(layout.columns));
 }
@@ -287,7 +285,7 @@ void forIndexLists(Body& body, const Element& element, Visit&& visit) {
                 body.skip(property);
 }
 
-void readFaces(Body& body, const Element& element, std::size_t vertices, Mesh& mesh) {
+void readFaces(Body& body, const Element& element, std::size_t vertices, MeshContent& mesh) {
     std::vector<std::uint32_t> corners;
     forIndexLists(body, element, [&](const Property& property, std::int64_t face, std::int64_t count) {
         corners.clear();
@@ -297,13 +295,13 @@ void readFaces(Body& body, const Element& element, std::size_t vertices, Mesh& m
             if (index < 0) body.fail(what + " uses vertex -1");
             corners.push_back(std::uint32_t(index));
         }
-        appendPolygon(mesh, corners.data(), corners.size());
+        mesh.polygons.add(corners.data(), corners.size());
     });
 }
 
 // Triangle strips: every corner makes a face with the two before it, every second one
 // flipped; -1 starts a new strip.
-void readStrips(Body& body, const Element& element, std::size_t vertices, Mesh& mesh) {
+void readStrips(Body& body, const Element& element, std::size_t vertices, MeshContent& mesh) {
     forIndexLists(body, element, [&](const Property& property, std::int64_t, std::int64_t count) {
         std::uint32_t before[2] = {0, 0};
         std::int64_t length = 0;
@@ -315,9 +313,9 @@ void readStrips(Body& body, const Element& element, std::size_t vertices, Mesh& 
             }
             const std::uint32_t corner = std::uint32_t(index);
             const bool degenerate = corner == before[0] || corner == before[1] || before[0] == before[1];
-            if (length >= 2 && !degenerate)
-                mesh.triangles.push_back(length % 2 == 0 ? Triangle{before[0], before[1], corner}
-                                                         : Triangle{before[1], before[0], corner});
+            const std::size_t flipped = length % 2 == 0 ? 0 : 1;
+            const Triangle face{before[flipped], before[1 - flipped], corner};
+            if (length >= 2 && !degenerate) mesh.polygons.add(face.data(), 3);
             before[0] = before[1];
             before[1] = corner;
             ++length;
@@ -327,11 +325,11 @@ void readStrips(Body& body, const Element& element, std::size_t vertices, Mesh& 
 
 }  // namespace
 
-Mesh readPly(const std::string& path, const std::string& content) {
+MeshContent readPly(const std::string& path, const std::string& content, const RunContext&) {
     const Header header = readHeader(path, content);
     checkCounts(path, content, header);
     Body body(path, content, header);
-    Mesh mesh;
+    MeshContent mesh;
     for (const Element& element : header.elements) {
         if (element.name == "vertex")
             readVertices(body, element, mesh.points, nullptr, mesh.attributes);
@@ -346,11 +344,11 @@ Mesh readPly(const std::string& path, const std::string& content) {
     return mesh;
 }
 
-PointCloud readPlyPoints(const std::string& path, const std::string& content) {
+PointContent readPlyPoints(const std::string& path, const std::string& content, const RunContext&) {
     const Header header = readHeader(path, content);
     checkCounts(path, content, header);
     Body body(path, content, header);
-    PointCloud cloud;
+    PointContent cloud;
     for (const Element& element : header.elements) {
         if (element.name == "vertex") {
             readVertices(body, element, cloud.points, &cloud.normals, cloud.attributes);

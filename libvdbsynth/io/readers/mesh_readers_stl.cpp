@@ -21,28 +21,28 @@ struct PointEqual {
 // Gives corners with the same bits one vertex.
 class Welder {
 public:
-    explicit Welder(Mesh& mesh) : mMesh(mesh) {}
+    explicit Welder(MeshContent& mesh) : mMesh(mesh) {}
     std::uint32_t add(Vec3f p) {
         for (int axis = 0; axis < 3; ++axis) p[axis] += 0.f;  // -0 becomes +0
         const auto [it, isNew] = mSeen.emplace(p, std::uint32_t(mMesh.points.size()));
-        if (isNew) mMesh.points.push_back(p);
+        if (isNew) mMesh.points.push_back(cast<double>(p));
         return it->second;
     }
 
 private:
-    Mesh& mMesh;
+    MeshContent& mMesh;
     std::unordered_map<Vec3f, std::uint32_t, PointHash, PointEqual> mSeen;
 };
 
-void addTriangle(Mesh& mesh, Welder& welder, const Vec3f corner[3]) {
+void addTriangle(MeshContent& mesh, Welder& welder, const Vec3f corner[3]) {
     const Triangle t{welder.add(corner[0]), welder.add(corner[1]), welder.add(corner[2])};
-    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) mesh.triangles.push_back(t);
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) mesh.polygons.add(t.data(), 3);
 }
 
-Mesh readBinary(const std::string& path, const std::string& content, std::uint32_t count) {
-    Mesh mesh;
+MeshContent readBinary(const std::string& path, const std::string& content, std::uint32_t count) {
+    MeshContent mesh;
     Welder welder(mesh);
-    mesh.triangles.reserve(count);
+    mesh.polygons.corners.reserve(std::size_t(count) * 3);
     for (std::uint32_t i = 0; i < count; ++i) {
         Vec3f corner[3];
         std::memcpy(corner, content.data() + 84 + std::size_t(i) * 50 + 12, sizeof corner);
@@ -55,8 +55,8 @@ Mesh readBinary(const std::string& path, const std::string& content, std::uint32
     return mesh;
 }
 
-Mesh readAscii(const std::string& path, const std::string& content) {
-    Mesh mesh;
+MeshContent readAscii(const std::string& path, const std::string& content) {
+    MeshContent mesh;
     Welder welder(mesh);
     TextScanner scanner(path, content, '\0');
     scanner.skipLine();  // solid NAME
@@ -67,7 +67,7 @@ Mesh readAscii(const std::string& path, const std::string& content) {
         const std::string_view word = scanner.word();
         if (word == "vertex") {
             if (corners == 3) scanner.fail("a facet has more than three vertices");
-            for (int axis = 0; axis < 3; ++axis) corner[corners][axis] = scanner.real();
+            for (int axis = 0; axis < 3; ++axis) corner[corners][axis] = float(scanner.real());
             ++corners;
         } else if (word == "endfacet") {
             if (corners != 3) scanner.fail("a facet has fewer than three vertices");
@@ -87,7 +87,7 @@ Mesh readAscii(const std::string& path, const std::string& content) {
 
 }  // namespace
 
-Mesh readStl(const std::string& path, const std::string& content) {
+MeshContent readStl(const std::string& path, const std::string& content, const RunContext&) {
     if (content.size() >= 84) {
         std::uint32_t count = 0;
         std::memcpy(&count, content.data() + 80, 4);

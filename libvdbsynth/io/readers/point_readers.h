@@ -1,13 +1,27 @@
 #pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/geometry/attribute.h"
 #include "libvdbsynth/io/point_file.h"
+#include "libvdbsynth/math/vec3.h"
+
+#include <string>
+#include <vector>
 
 namespace vdbsynth {
 
-// One reader per format, behind readPoints, which drops non-finite points. `content` is the whole file.
+/// What a file of points holds, before it becomes a PointCloud.
+struct PointContent {
+    std::vector<Vec3d> points;   ///< as in the file, also those that are not finite
+    std::vector<Vec3f> normals;  ///< one per point, or empty
+    Attributes attributes;       ///< of the points
+};
+
+// One reader per format, behind readPoints, which drops non-finite points. `content` is the whole file. What
+// a reader guesses or leaves out is a message.
 // @throw Error BadData
-PointCloud readPlyPoints(const std::string& path, const std::string& content);
-PointCloud readPcd(const std::string& path, const std::string& content);
-PointCloud readRows(const std::string& path, const std::string& content);
+PointContent readPlyPoints(const std::string& path, const std::string& content, const RunContext& ctx = {});
+PointContent readPcd(const std::string& path, const std::string& content, const RunContext& ctx = {});
+PointContent readRows(const std::string& path, const std::string& content, const RunContext& ctx = {});
 
 /// Number of elements of faces or strips that are not empty, as a PLY header claims. @throw Error BadData
 std::int64_t plyFaceCount(const std::string& path, const std::string& content);

@@ -214,12 +214,10 @@ double bitsOf(float value) {
 }
 
 // Reads the numbers of one point.
-void appendPoint(Row& row, const std::vector<double>& numbers, PointCloud& cloud) {
-    const auto vector = [&](std::size_t at) {
-        return Vec3f{float(numbers[at]), float(numbers[at + 1]), float(numbers[at + 2])};
-    };
+void appendPoint(Row& row, const std::vector<double>& numbers, PointContent& cloud) {
+    const auto vector = [&](std::size_t at) { return Vec3d{numbers[at], numbers[at + 1], numbers[at + 2]}; };
     cloud.points.push_back(vector(0));
-    if (row.normals) cloud.normals.push_back(vector(3));
+    if (row.normals) cloud.normals.push_back(cast<float>(vector(3)));
     std::size_t column = 0;
     for (std::size_t slot = row.normals ? 6 : 3; slot < row.fields.size(); ++slot) {
         if (slot == row.colour) {
@@ -232,7 +230,7 @@ void appendPoint(Row& row, const std::vector<double>& numbers, PointCloud& cloud
 }
 
 void readAscii(const std::string& path, const std::string& content, const Header& header, Row& row,
-               PointCloud& cloud) {
+               PointContent& cloud) {
     TextScanner scanner(path, content, '\0', header.bytes);
     if (std::uint64_t(header.points) > (content.size() - header.bytes) / 2 + 1)
         scanner.fail("the header claims more points than the file holds");
@@ -245,21 +243,21 @@ void readAscii(const std::string& path, const std::string& content, const Header
                 const std::string_view word = scanner.word();
                 if (word.empty()) scanner.fail("the file is truncated");
                 if (slotOf[f] < 0 || c > 0) continue;
-                float value = 0;
+                double value = 0;
                 std::int64_t whole = 0;
                 const bool isWhole = header.fields[f].type != 'F' && parseWhole(word, whole);
                 if (!isWhole && !parseAnyReal(word, value))
                     scanner.fail("\"" + std::string(word.substr(0, 40)) + "\" is not a number");
                 const bool colour = row.colour > 0 && std::size_t(slotOf[f]) == row.colour;
                 numbers[std::size_t(slotOf[f])] = isWhole  ? double(whole)
-                                                  : colour ? bitsOf(value)
-                                                           : double(value);
+                                                  : colour ? bitsOf(float(value))
+                                                           : value;
             }
         appendPoint(row, numbers, cloud);
     }
 }
 
-void readBinary(const Header& header, const Layout& layout, Row& row, PointCloud& cloud) {
+void readBinary(const Header& header, const Layout& layout, Row& row, PointContent& cloud) {
     std::vector<double> numbers(row.fields.size());
     for (std::int64_t p = 0; p < header.points; ++p) {
         for (std::size_t slot = 0; slot < row.fields.size(); ++slot) {
@@ -278,10 +276,10 @@ void readBinary(const Header& header, const Layout& layout, Row& row, PointCloud
 
 }  // namespace
 
-PointCloud readPcd(const std::string& path, const std::string& content) {
+PointContent readPcd(const std::string& path, const std::string& content, const RunContext&) {
     const Header header = readHeader(path, content);
     Row row = rowOf(path, header);
-    PointCloud cloud;
+    PointContent cloud;
     if (header.data == "ascii") {
         readAscii(path, content, header, row, cloud);
     } else if (header.data == "binary" || header.data == "binary_compressed") {

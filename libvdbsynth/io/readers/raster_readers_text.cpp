@@ -27,7 +27,7 @@ Raster readGslib(const std::string& path, const std::string& content, const RunC
     Raster raster = makeRaster(path, columns, rows, slices, 1, ctx);
     raster.stack = slices > 1;
     for (float& value : raster.values) {
-        value = scanner.real();
+        value = float(scanner.real());
         for (std::int64_t i = 1; i < variables; ++i) scanner.real();
     }
     return raster;

@@ -199,7 +199,7 @@ void readArray(const std::string& path, const pugi::xml_node& array, const Encod
     const std::size_t expected = raster.values.size() * bytesOf(type);
     if (format == "ascii") {
         TextScanner scanner(path, text, '\0');
-        for (float& value : raster.values) value = scanner.real();
+        for (float& value : raster.values) value = float(scanner.real());
         return;
     }
     std::string bytes;

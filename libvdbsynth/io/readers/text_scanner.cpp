@@ -55,9 +55,9 @@ void TextScanner::skipLine() {
     if (mAt < mText.size()) ++mAt;
 }
 
-float TextScanner::real() {
+double TextScanner::real() {
     const std::string_view text = word();
-    float value = 0;
+    double value = 0;
     if (text.empty()) fail("the file ends where a number should be; it is truncated");
     if (!parseAnyReal(text, value)) fail("\"" + std::string(text.substr(0, 40)) + "\" is not a number");
     if (!std::isfinite(value)) fail("a coordinate is not a finite number");

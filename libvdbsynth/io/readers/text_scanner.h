@@ -24,7 +24,7 @@ public:
     std::string_view wordOnLine();
     void skipLine();
     /// @throw Error BadData (not a number, not finite, end of file)
-    float real();
+    double real();
     std::int64_t whole();
     std::size_t position() const { return mAt; }
     std::size_t line() const;

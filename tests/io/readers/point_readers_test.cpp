@@ -23,25 +23,26 @@ std::string ply(const std::string& elements, const std::string& body) {
 }
 const std::string kVertex = "element vertex 2\nproperty float x\nproperty float y\nproperty float z\n";
 
-bool equal(const Vec3f& a, const Vec3f& b) {
+template <typename T>
+bool equal(const Vec3<T>& a, const Vec3d& b) {
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
 }  // namespace
 
 TEST_CASE("readRows: what three columns mean, and numbers that are none stay", "[io][oracle]") {
-    const PointCloud plain = readRows("a", "1 2 3\n4;5;nan\n");
+    const PointContent plain = readRows("a", "1 2 3\n4;5;nan\n");
     REQUIRE(plain.points.size() == 2);  // readPoints drops the second
     CHECK(std::isnan(plain.points[1].z));
     CHECK(plain.normals.empty());
     // All rows decide: one that is no unit vector makes them colours, one over 255 neither.
-    const PointCloud colours = readRows("a", "0 0 0 0 0 1\n0 0 0 0 0 2\n");
+    const PointContent colours = readRows("a", "0 0 0 0 0 1\n0 0 0 0 0 2\n");
     CHECK(colours.normals.empty());
     CHECK(colours.attributes.size() == 1);
-    const PointCloud other = readRows("a", "0 0 0 0 0 1\n0 0 0 0 0 256\n");
+    const PointContent other = readRows("a", "0 0 0 0 0 1\n0 0 0 0 0 256\n");
     CHECK(other.normals.empty());
     CHECK(other.attributes.empty());
-    const PointCloud last = readRows("a", "7 8 9 255 0 0 0.6 0.8 0\n");
+    const PointContent last = readRows("a", "7 8 9 255 0 0 0.6 0.8 0\n");
     REQUIRE(last.normals.size() == 1);
     CHECK(equal(last.normals[0], {0.6f, 0.8f, 0}));
     CHECK(last.attributes.size() == 1);
@@ -49,12 +50,12 @@ TEST_CASE("readRows: what three columns mean, and numbers that are none stay", "
 }
 
 TEST_CASE("readRows: a count, that many points and that many normals", "[io][oracle]") {
-    const PointCloud both = readRows("a", "2\n0 0 0\n1 2 3\n0 0 1\n0 1 0\n");
+    const PointContent both = readRows("a", "2\n0 0 0\n1 2 3\n0 0 1\n0 1 0\n");
     REQUIRE(both.points.size() == 2);
     CHECK(equal(both.points[1], {1, 2, 3}));
     REQUIRE(both.normals.size() == 2);
     CHECK(equal(both.normals[1], {0, 1, 0}));
-    const PointCloud points = readRows("a", "2\n0 0 0\n1 2 3\n");
+    const PointContent points = readRows("a", "2\n0 0 0\n1 2 3\n");
     CHECK(points.points.size() == 2);
     CHECK(points.normals.empty());
     for (const char* content :
@@ -74,7 +75,7 @@ TEST_CASE("readPcd: fields of any type, size, count and order", "[io][oracle]") 
         test::append(body, std::uint32_t(7 + point));   // y
         test::append(body, std::int64_t(100 - point));  // heat
     }
-    const PointCloud cloud = readPcd("a", pcdHeader("z pad x y heat", "2 1 8 4 8", "I U F U I", "1 2 1 1 1",
+    const PointContent cloud = readPcd("a", pcdHeader("z pad x y heat", "2 1 8 4 8", "I U F U I", "1 2 1 1 1",
                                                     "WIDTH 2\nHEIGHT 1\nDATA binary\n") +
                                               body);
     REQUIRE(cloud.points.size() == 2);  // without POINTS they are the width times the height
@@ -82,7 +83,7 @@ TEST_CASE("readPcd: fields of any type, size, count and order", "[io][oracle]") 
     CHECK(equal(cloud.points[1], {1.5f, 8, -4}));
     REQUIRE(findAttribute(cloud.attributes, "heat"));
     CHECK(findAttribute(cloud.attributes, "heat")->values == std::vector<float>{100, 99});
-    const PointCloud text =
+    const PointContent text =
         readPcd("a", pcdHeader("normal_x normal_y normal_z x y z", "4 4 4 4 4 4", "F F F F F F",
                                "1 1 1 1 1 1", "POINTS 1\nDATA ascii\n0 0 1 4 nan 6\n"));
     REQUIRE(text.normals.size() == 1);
@@ -113,7 +114,7 @@ TEST_CASE("readPcd: headers that are wrong", "[io][error]") {
 TEST_CASE("readPlyPoints: vertices before and behind other elements", "[io][oracle]") {
     const std::string extra = "element camera 1\nproperty list uchar int ids\nproperty double angle\n";
     for (const bool before : {false, true}) {
-        const PointCloud cloud =
+        const PointContent cloud =
             readPlyPoints("a", ply(before ? extra + kVertex : kVertex + extra,
                                    before ? "3 1 2 3 0.5\n1 2 3\n4 5 6\n" : "1 2 3\n4 5 6\n3 1 2 3 0.5\n"));
         REQUIRE(cloud.points.size() == 2);

@@ -76,8 +76,8 @@ TEST_CASE("readPcd: fields of any type, size, count and order", "[io][oracle]") 
         test::append(body, std::int64_t(100 - point));  // heat
     }
     const PointContent cloud = readPcd("a", pcdHeader("z pad x y heat", "2 1 8 4 8", "I U F U I", "1 2 1 1 1",
-                                                    "WIDTH 2\nHEIGHT 1\nDATA binary\n") +
-                                              body);
+                                                      "WIDTH 2\nHEIGHT 1\nDATA binary\n") +
+                                                body);
     REQUIRE(cloud.points.size() == 2);  // without POINTS they are the width times the height
     CHECK(equal(cloud.points[0], {0.5f, 7, -3}));
     CHECK(equal(cloud.points[1], {1.5f, 8, -4}));

@@ -6,6 +6,7 @@
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/point_file.h"
 #include "libvdbsynth/io/raster_file.h"
+#include "libvdbsynth/vdb/read/surface_bounds.h"
 
 #include <nlohmann/json.hpp>
 
@@ -117,9 +118,12 @@ Json vdbInfo(const std::string& path, Run& run) {
         if (run.arguments.has("iso")) read.iso = run.arguments.real("iso");
         const LevelSet model = modelFromGrids(path, contents.grids, read, run.context);
         const BandQuality quality = measureBand(*model.grid, run.context);
+        const WorldBox bounds = surfaceBounds(*model.grid, run.context);
         info["model"] = Json{
             {"voxel_size", voxelSizeOf(*model.grid)},
             {"half_width", halfWidthOf(*model.grid)},
+            {"bounds_min", triple(bounds.min)},
+            {"bounds_max", triple(bounds.max)},
             {"domain", boxText(model.domain)},
             {"domain_recorded", model.domainRecorded},
             {"solid_voxels", solidVoxels(*model.grid)},

@@ -97,11 +97,13 @@ DistanceFit distanceFitOf(const openvdb::FloatGrid& grid, const RunContext& ctx)
 
 FloatGridPtr withSurfaceVoxels(const openvdb::FloatGrid& grid) {
     if (grid.background() != 0) return nullptr;
+    // Beyond the active voxels nothing is known: the surface may leave them there.
+    const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
     std::vector<openvdb::Coord> found;
     const openvdb::FloatGrid::ConstAccessor accessor = grid.getConstAccessor();
     for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
         for (auto it = leaf->cbeginValueOff(); it; ++it) {
-            if (*it != 0) continue;
+            if (*it != 0 || !box.isInside(it.getCoord())) continue;
             bool negative = false, positive = false;
             for (const Index3& step : kAllNeighbours) {
                 float value = 0;

@@ -6,13 +6,12 @@
 #include "libvdbsynth/vdb/read/band_contacts.h"
 #include "libvdbsynth/vdb/read/field_kind.h"
 #include "libvdbsynth/vdb/read/inactive_regions.h"
-#include "libvdbsynth/vdb/read/neighbour_pairs.h"
+#include "libvdbsynth/vdb/read/level_set_repair_steps.h"
 
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Prune.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -51,12 +50,6 @@ void setBackground(openvdb::FloatGrid& grid, float value) {
     grid.tree().root().setBackground(value, /* updateChildNodes= */ false);
 }
 
-// Two voxels, or squares of them, on two sides of a cut.
-struct Cut {
-    openvdb::Coord inside, outside;
-    int span, face;  // 0 low x, 1 high x, 2 low y ...
-};
-
 class Repair {
 public:
     Repair(const FloatGridPtr& grid, const RunContext& ctx) : mContext(ctx), mSize(grid->voxelSize()) {
@@ -79,6 +72,8 @@ public:
             if (!mResult.measureAnew) contacts = bandContactsOf(field(), 1.5 * mUnit, mContext);
         }
         if (!mResult.measureAnew && mUniform) repairBand(contacts);
+        // Voxels that are no cubes are resampled anyway.
+        if (mWidthUnknown && !mUniform) mResult.measureAnew = true;
         return mResult;
     }
 
@@ -133,7 +128,7 @@ private:
         if (!(field().background() > 0) || double(field().background()) > 1000 * mUnit) {
             say("its background of " + roundedText(double(field().background()), 4) +
                 " is no distance; what lies beyond its voxels is outside");
-            mResult.measureAnew = true;
+            mWidthUnknown = true;
         }
         const bool known = believed && field().background() > 0;
         // The outside touches the inside: a cut may have opened it, so regions end where the voxels end.
@@ -178,7 +173,8 @@ private:
     }
 
     void writeSigns(const InactiveRegions& regions, bool believed) {
-        const float width = mResult.measureAnew ? float(double(kHalfWidth) * mUnit) : field().background();
+        const bool unknown = mResult.measureAnew || mWidthUnknown;
+        const float width = unknown ? float(double(kHalfWidth) * mUnit) : field().background();
         std::uint64_t filled = 0, emptied = 0;
         openvdb::FloatGrid& grid = changing();
         const openvdb::tree::ValueAccessor<const openvdb::Int32Tree> labels(regions.labels());
@@ -189,7 +185,7 @@ private:
             if (inside && !(*it < 0)) filled += voxels;
             if (!inside && stored) emptied += voxels;
             // The widths of a sound band stay, which may be two.
-            const bool keeps = !mResult.measureAnew && (*it < 0) == inside && *it != 0;
+            const bool keeps = !unknown && (*it < 0) == inside && *it != 0;
             if (!keeps) it.setValue(inside ? -width : width);
         }
         for (const openvdb::CoordBBox& side : mFence) grid.sparseFill(side, width, /* active= */ false);
@@ -199,74 +195,39 @@ private:
         if (emptied > 0) say("voxels outside were marked as inside; emptied by the signs of its band");
     }
 
-    // Where the inside ends in a step, it was cut: the surface is the plane between the voxels.
     void closeCuts() {
-        std::vector<Cut> cuts;
-        double voxels = 0;
-        const auto take = [&](const VoxelPair& pair) {
-            const bool insideA = pair.valueA < 0;
-            if (insideA == (pair.valueB < 0) || (insideA ? pair.activeB : pair.activeA)) return;
-            if (std::abs(pair.valueA - pair.valueB) <= 1.5 * mUnit) return;
-            int face = 0;
-            for (int axis = 0; axis < 3; ++axis)
-                if (pair.a[axis] != pair.b[axis])
-                    face = 2 * axis + ((pair.b[axis] > pair.a[axis]) == insideA ? 1 : 0);
-            cuts.push_back(insideA ? Cut{pair.a, pair.b, pair.span, face}
-                                   : Cut{pair.b, pair.a, pair.span, face});
-            voxels += double(pair.span) * double(pair.span);
-        };
-        const openvdb::FloatGrid::ConstAccessor accessor = field().getConstAccessor();
-        for (auto leaf = field().tree().cbeginLeaf(); leaf; ++leaf) forEachPairOfLeaf(*leaf, accessor, take);
-        forEachPairOfTiles(field().tree(), take);
-        if (cuts.empty()) return;
-        requireMemory(mContext, voxels * 80, "closing a level set that is cut open", "use larger voxels");
-        for (const Cut& cut : cuts) close(cut);
-        sayCuts(cuts);
+        const std::string faces = closedCuts(changing(), mUnit, mContext);
+        if (faces.empty()) return;
+        say("its solid is cut open at " + faces + "; closed flat there");
         const double present = double(field().background()) / mUnit;
-        if (!mResult.measureAnew && present >= kNarrowest && present <= 100)
+        if (!mResult.measureAnew && !mWidthUnknown && present >= kNarrowest && present <= 100)
             mResult.halfWidth = float(present);
         mResult.measureAnew = true;
     }
 
-    void close(const Cut& cut) {
-        openvdb::FloatGrid::Accessor accessor = changing().getAccessor();
-        const int axis = cut.face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
-        const float half = float(mUnit / 2);
-        for (int i = 0; i < cut.span; ++i)
-            for (int j = 0; j < cut.span; ++j) {
-                openvdb::Coord inside = cut.inside, outside = cut.outside;
-                inside[u] += i, outside[u] += i;
-                inside[v] += j, outside[v] += j;
-                accessor.setValue(inside, std::max(accessor.getValue(inside), -half));
-                accessor.setValue(outside, half);
-            }
-    }
-
-    void sayCuts(const std::vector<Cut>& cuts) {
-        static constexpr std::array<const char*, 6> kFaces{"low x",  "high x", "low y",
-                                                           "high y", "low z",  "high z"};
-        std::array<bool, 6> at{};
-        for (const Cut& cut : cuts) at[std::size_t(cut.face)] = true;
-        std::string names;
-        for (std::size_t face = 0; face < 6; ++face)
-            if (at[face]) names += std::string(names.empty() ? "" : ", ") + kFaces[face];
-        say("its solid is cut open at " + names + "; closed flat there");
+    // A band ends early where voxels have neighbours beyond it that are nearer to the surface than it says.
+    static bool endsEarly(const BandContacts& contacts) {
+        const auto early = [](const BandSide& side) {
+            return side.early >= 8 && double(side.early) > 0.05 * double(side.voxels);
+        };
+        return early(contacts.outside) || early(contacts.inside);
     }
 
     void repairBand(const BandContacts& contacts) {
         const double width = double(field().background()), voxels = width / mUnit;
         const ValueRange range = rangeOf(field());
-        const auto narrower = [](const BandSide& side) {
-            return side.early >= 8 && double(side.early) > 0.05 * double(side.voxels);
-        };
-        if (voxels < kNarrowest) {
+        if (mWidthUnknown) {
+            cutToKnown(range);
+        } else if (voxels < kNarrowest) {
+            mResult.measureAnew = true;
             say("its band of " + roundedText(voxels, 3) +
                 " voxels a side is under 1.5; measured anew with 3");
-            mResult.measureAnew = true;
-        } else if (narrower(contacts.outside) || narrower(contacts.inside)) {
+        } else if (endsEarly(contacts)) {
+            cutToKnown(range);
             say("its background says a band of " + roundedText(voxels, 3) +
-                " voxels a side, its distances end earlier; measured anew with 3");
-            mResult.measureAnew = true;
+                " voxels a side, its distances end earlier; " +
+                (mResult.measureAnew ? "measured anew with 3"
+                                     : "cut to " + roundedText(halfWidthOf(field()), 3)));
         } else if (std::min(range.minimum, contacts.deepest) < -1.001 * width ||
                    std::max(range.maximum, contacts.farthest) > 1.001 * width) {
             trim(float(width));
@@ -275,18 +236,28 @@ private:
         }
     }
 
+    // Good distances stay, as far as they reach on both sides but not beyond the usual band; else anew.
+    void cutToKnown(const ValueRange& range) {
+        const double width = std::min({double(kHalfWidth) * mUnit, range.maximum, -range.minimum});
+        mResult.measureAnew = !(mFit.inWorldUnits() || mFit.inVoxels()) || width < 1.5 * mUnit;
+        if (mResult.measureAnew) return;
+        trim(float(width));
+        mResult.measureAnew = endsEarly(bandContactsOf(field(), 1.5 * mUnit, mContext));
+    }
+
     void trim(float width) {
         changeValues(changing(), mContext, [width](float value, bool& active) {
             active = active && value > -width && value < width;
             return active ? value : value < 0 ? -width : width;
         });
+        setBackground(changing(), width);
         openvdb::tools::pruneLevelSet(changing().tree());
     }
 
     const RunContext& mContext;
     DistanceFit mFit;
     const openvdb::Vec3d mSize;
-    bool mUniform = true, mCopied = false, mTurned = false;
+    bool mUniform = true, mCopied = false, mTurned = false, mWidthUnknown = false;
     std::vector<openvdb::CoordBBox> mFence;
     double mUnit = 1;  // what a voxel is in the field's values
     RepairedField mResult;

@@ -8,7 +8,6 @@
 #include "libvdbsynth/vdb/wall.h"
 
 #include <openvdb/openvdb.h>
-#include <openvdb/tools/LevelSetRebuild.h>
 
 #include <algorithm>
 #include <cmath>
@@ -88,14 +87,12 @@ bool keepsDistances(const openvdb::FloatGrid& grid) {
     return true;
 }
 
-// The zero level in the voxels of another transform, by OpenVDB.
+// The zero level in the voxels of another transform.
 openvdb::FloatGrid::Ptr rebuiltBy(const openvdb::FloatGrid& grid, const openvdb::math::Transform& transform,
                                   const std::string& what, const RunContext& ctx) {
-    return withThreads(ctx, [&] {
-        return behindWall(ErrorCode::Unusable, what, [&] {
-            return openvdb::tools::levelSetRebuild(grid, 0.f, kHalfWidth, kHalfWidth, &transform);
-        });
-    });
+    const openvdb::FloatGrid::Ptr lattice = openvdb::FloatGrid::create();
+    lattice->setTransform(transform.copy());
+    return resampleLevelSet(grid, *lattice, kHalfWidth, what, ctx);
 }
 
 // Negative where a fog is denser than `iso`.

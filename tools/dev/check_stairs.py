@@ -9,10 +9,10 @@ import sys
 BELOW = {}
 for room, direct in [
     ("base", []), ("math", ["base"]), ("geometry", ["math"]), ("grid", ["geometry"]),
-    ("distance", ["grid"]), ("raster", ["distance"]), ("map", ["grid"]),
+    ("distance", ["grid"]), ("solid", ["distance"]), ("raster", ["distance"]), ("map", ["grid"]),
     ("io", ["raster"]), ("procedural", ["distance"]), ("surface", ["grid"]), ("search", ["io"]),
     ("synth", ["search", "map"]), ("analogy", ["search", "surface", "map"]), ("measure", ["distance", "synth"]),
-    ("vdb", ["io", "map", "distance"]), ("render", ["vdb"]),
+    ("vdb", ["io", "map", "solid"]), ("render", ["vdb"]),
     ("pipeline", ["measure", "synth", "analogy", "procedural", "render"]), ("tools", ["pipeline"]),
 ]:
     BELOW[room] = {room}.union(*[BELOW[d] for d in direct]) if direct else {room}

@@ -7,6 +7,9 @@
 #include "libvdbsynth/io/point_file.h"
 #include "libvdbsynth/io/raster_file.h"
 
+#include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
+#include "tools/vdb_synth/surface_json.h"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -28,18 +31,16 @@ Json meshInfo(const std::string& path, const Run& run) {
     // Vertices that a texture seam splits are one point of the surface.
     if (findAttribute(mesh.attributes, "uv")) weldVertices(mesh);
     const MeshSummary s = summarize(mesh);
-    return Json{{"file", run.withoutTemporaries(path)},
-                {"kind", "mesh"},
-                {"vertices", s.vertices},
-                {"faces", s.faces},
-                {"bounds_min", triple(s.boxMin)},
-                {"bounds_max", triple(s.boxMax)},
-                {"area", s.area},
-                {"signed_volume", s.signedVolume},
-                {"open_edges", s.openEdges},
-                {"non_manifold_edges", s.nonManifoldEdges},
-                {"misoriented_edges", s.misorientedEdges},
-                {"closed_manifold", s.closedManifold()}};
+    Json json{{"file", run.withoutTemporaries(path)},
+              {"kind", "mesh"},
+              {"vertices", s.vertices},
+              {"faces", s.faces}};
+    json.update(surfaceJson(mesh, run.context));
+    json.update(Json{{"open_edges", s.openEdges},
+                     {"non_manifold_edges", s.nonManifoldEdges},
+                     {"misoriented_edges", s.misorientedEdges},
+                     {"closed_manifold", s.closedManifold()}});
+    return json;
 }
 
 Json pointsInfo(const std::string& path, const Run& run) {
@@ -50,10 +51,13 @@ Json pointsInfo(const std::string& path, const Run& run) {
             low[axis] = std::min(low[axis], p[axis]);
             high[axis] = std::max(high[axis], p[axis]);
         }
-    return Json{{"file", run.withoutTemporaries(path)},    {"kind", "points"},
-                {"points", file.cloud.points.size()},      {"invalid_points", file.invalid},
-                {"normals", !file.cloud.normals.empty()},  {"bounds_min", triple(cast<double>(low))},
-                {"bounds_max", triple(cast<double>(high))}};
+    return Json{{"file", run.withoutTemporaries(path)},
+                {"kind", "points"},
+                {"points", file.cloud.points.size()},
+                {"invalid_points", file.invalid},
+                {"normals", !file.cloud.normals.empty()},
+                {"bounds_min", triple(cast<double>(low) + file.cloud.origin)},
+                {"bounds_max", triple(cast<double>(high) + file.cloud.origin)}};
 }
 
 Json rasterInfo(const std::string& path, const Run& run) {
@@ -117,7 +121,8 @@ Json vdbInfo(const std::string& path, Run& run) {
         if (run.arguments.has("iso")) read.iso = run.arguments.real("iso");
         const LevelSet model = modelFromGrids(path, contents.grids, read, run.context);
         const BandQuality quality = measureBand(*model.grid, run.context);
-        info["model"] = Json{
+        info["model"] = surfaceJson(levelSetToMesh(*model.grid, {}, run.context), run.context);
+        info["model"].update(Json{
             {"voxel_size", voxelSizeOf(*model.grid)},
             {"half_width", halfWidthOf(*model.grid)},
             {"domain", boxText(model.domain)},
@@ -127,7 +132,7 @@ Json vdbInfo(const std::string& path, Run& run) {
             {"gradient_error_mean", quality.gradientErrorMean},
             {"gradient_error_p99", quality.gradientErrorP99},
             {"band_gaps", quality.missingNeighbours},
-            {"valid", quality.finite && quality.gradientErrorMean < 0.15 && quality.missingNeighbours == 0}};
+            {"valid", quality.finite && quality.gradientErrorMean < 0.15 && quality.missingNeighbours == 0}});
     } catch (const Error& error) {
         if (error.code() == ErrorCode::Cancelled) throw;
         info["model"] = nullptr;

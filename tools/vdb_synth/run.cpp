@@ -4,8 +4,11 @@
 #include "libvdbsynth/base/hash.h"
 #include "libvdbsynth/base/machine_memory.h"
 #include "libvdbsynth/io/path.h"
+#include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
+#include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
 #include "tools/vdb_synth/options.h"
 #include "tools/vdb_synth/stop_flag.h"
+#include "tools/vdb_synth/surface_json.h"
 #include "tools/vdb_synth/version.h"
 
 #include <nlohmann/json.hpp>
@@ -182,8 +185,10 @@ LevelSet Run::load(const std::string& path) {
     return load(path, modelOptions());
 }
 
-LevelSet Run::load(const std::string& path, const ModelOptions& options) {
+LevelSet Run::load(const std::string& path, const ModelOptions& given) {
     reserveOutputs();
+    ModelOptions options = given;
+    if (arguments.has("report")) options.keepSource = true;  // the report compares with it
     LevelSet model = loadModel(path, options, context);
     noteInput(path);
     return model;
@@ -229,6 +234,9 @@ GridPtr Run::loadGrid(const std::string& option, const std::string& text) {
 void Run::describe(const LevelSet& result) {
     count("active_voxels", activeVoxels(*result.grid));
     if (!arguments.has("report")) return;
+    if (result.source) count("input_surface", surfaceJson(*result.source, context));
+    count("surface", surfaceJson(levelSetToMesh(*result.grid, {}, context), context));
+    count("lost_share", lostShare(*result.grid));
     const BandQuality band = measureBand(*result.grid, context);
     mImpl->quality = {{"gradient_error_mean", band.gradientErrorMean},
                       {"gradient_error_p99", band.gradientErrorP99},

@@ -144,7 +144,7 @@ private:
                 mParts.parts[mParts.partOf[first->face]].role = PartRole::Open;
         });
         for (MeshPart& part : mParts.parts)
-            if (std::abs(part.signedVolume) < 1e-9 * std::pow(part.area, 1.5)) part.role = PartRole::Open;
+            if (std::abs(part.signedVolume) < 1e-9 * part.area * std::sqrt(part.area)) part.role = PartRole::Open;
     }
 
     const Mesh& mMesh;

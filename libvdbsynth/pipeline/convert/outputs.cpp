@@ -72,7 +72,7 @@ void warnOfSteps(const std::string& path, const Mesh& mesh, const RunContext& ct
     if (farthest == 0) return;
     message(ctx, MessageLevel::Warning,
             path + ": so far from zero the coordinates of .stl have steps of " +
-                roundedText(std::exp2(std::floor(std::log2(farthest)) - 23), 2) +
+                roundedText(std::ldexp(1.0, std::ilogb(farthest) - 23), 2) +
                 "; .ply, .obj, .off and .glb keep them");
 }
 

@@ -94,11 +94,8 @@ std::vector<std::pair<double, double>> star(std::uint64_t seed, int corners) {
 TEST_CASE("appendPolygons: triangles and convex quads as they are, under three corners no face",
           "[geometry]") {
     PolygonList list;
-    const std::uint32_t corners[] = {0, 1, 2, 3};
-    list.add(corners, 2);
-    list.add(corners, 3);
-    list.add(corners, 4);
-    list.add(corners, 0);
+    const std::vector<std::uint32_t> corners{0, 1, 2, 3};
+    for (const std::size_t count : {2u, 3u, 4u, 0u}) list.add(corners.data(), count);
     Mesh mesh;
     CHECK(appendPolygons(mesh, list, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}) == 0);
     REQUIRE(mesh.triangles.size() == 1);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace vdbsynth {
 namespace {
@@ -12,6 +13,13 @@ namespace {
 constexpr double kStraight = 1e-6;
 // Of the squared length: a smaller area is rounding.
 constexpr double kNoArea = 1e-12;
+
+// Of the size: polygons that are thicker are folded, and their triangles matter to the area.
+constexpr double kFlat = 1e-3;
+// Corners up to which folded polygons get the triangles of least area, at a cost of their number cubed.
+constexpr std::size_t kMostFolded = 16;
+// Of the area: less of it flipped is rounding.
+constexpr double kFlippedShare = 1e-6;
 
 // Every polygon in turn, with shared buffers.
 class PolygonCutter {
@@ -26,7 +34,9 @@ public:
             return true;
         }
         if (count == 4) return addQuad(corners);
-        if (!project(corners, count) || isConvex()) {
+        const bool hasArea = project(corners, count);
+        if (hasArea && !mFlat && count <= kMostFolded) return addFolded(corners, count);
+        if (!hasArea || isConvex()) {
             for (std::size_t i = 1; i + 1 < count; ++i)
                 mMesh.triangles.push_back({corners[0], corners[i], corners[i + 1]});
             return true;
@@ -43,12 +53,15 @@ public:
 
 private:
     bool addQuad(const std::uint32_t* q);
+    bool addFolded(const std::uint32_t* corners, std::size_t count);
     bool project(const std::uint32_t* corners, std::size_t count);
     bool isConvex() const;
 
     Mesh& mMesh;
     const std::vector<Vec3d>& mPoints;
     EarClipper mClipper;
+    Vec3d mNormal;
+    bool mFlat = true;
     std::vector<double> mAlong, mAcross;  // in the polygon's plane
     std::vector<PlanePoint> mRing;
     std::vector<Triangle> mTriangles;
@@ -77,6 +90,38 @@ bool PolygonCutter::addQuad(const std::uint32_t* q) {
     return first || second;
 }
 
+// From the least areas of all shorter chains of corners; of equal ones the first.
+bool PolygonCutter::addFolded(const std::uint32_t* corners, std::size_t count) {
+    double least[kMostFolded][kMostFolded] = {};
+    std::size_t third[kMostFolded][kMostFolded] = {};
+    const auto areaOf = [&](std::size_t i, std::size_t j, std::size_t k) {
+        const Vec3d& p = mPoints[corners[i]];
+        return cross(mPoints[corners[j]] - p, mPoints[corners[k]] - p);
+    };
+    for (std::size_t chain = 2; chain < count; ++chain)
+        for (std::size_t i = 0; i + chain < count; ++i)
+            for (std::size_t j = i + 1, end = i + chain; j < end; ++j) {
+                const double area = least[i][j] + least[j][end] + length(areaOf(i, j, end));
+                if (j > i + 1 && area >= least[i][end]) continue;
+                least[i][end] = area;
+                third[i][end] = j;
+            }
+    double flipped = 0;
+    std::vector<std::pair<std::size_t, std::size_t>> open{{0, count - 1}};
+    while (!open.empty()) {
+        const auto [i, end] = open.back();
+        open.pop_back();
+        if (end < i + 2) continue;
+        const std::size_t j = third[i][end];
+        if (corners[i] != corners[j] && corners[j] != corners[end] && corners[end] != corners[i])
+            mMesh.triangles.push_back({corners[i], corners[j], corners[end]});
+        flipped += std::max(0.0, -dot(areaOf(i, j, end), mNormal));
+        open.push_back({j, end});
+        open.push_back({i, j});
+    }
+    return flipped <= kFlippedShare * least[0][count - 1];
+}
+
 // Scales values to the clipper's grid.
 template <typename Assign>
 void toGrid(const std::vector<double>& values, Assign&& assign) {
@@ -101,20 +146,24 @@ bool PolygonCutter::project(const std::uint32_t* corners, std::size_t count) {
     if (length(largest) <= kNoArea * size) return false;
     // A ring that crosses itself may have no area in all.
     if (length(area) <= kNoArea * size) area = dot(area, largest) < 0 ? -largest : largest;
-    const Vec3d normal = normalized(area);
+    mNormal = normalized(area);
     int axis = 0;
     for (int i = 1; i < 3; ++i)
-        if (std::abs(normal[i]) < std::abs(normal[axis])) axis = i;
+        if (std::abs(mNormal[i]) < std::abs(mNormal[axis])) axis = i;
     Vec3d unit;
     unit[axis] = 1;
-    const Vec3d along = normalized(cross(unit, normal)), across = cross(normal, along);
+    const Vec3d along = normalized(cross(unit, mNormal)), across = cross(mNormal, along);
     mAlong.resize(count);
     mAcross.resize(count);
+    double lowest = 0, highest = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3d p = mPoints[corners[i]] - start;
         mAlong[i] = dot(p, along);
         mAcross[i] = dot(p, across);
+        lowest = std::min(lowest, dot(p, mNormal));
+        highest = std::max(highest, dot(p, mNormal));
     }
+    mFlat = highest - lowest <= kFlat * std::sqrt(size);
     mRing.resize(count);
     toGrid(mAlong, [this](std::size_t i, std::int64_t value) { mRing[i].x = value; });
     toGrid(mAcross, [this](std::size_t i, std::int64_t value) { mRing[i].y = value; });

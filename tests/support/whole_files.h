@@ -23,6 +23,10 @@ inline std::map<std::string, std::string> wholeFiles(const TemporaryFolder& fold
         writeMesh(folder.path(name), format, mesh);
         files[name] = contentOf(folder.path(name));
     }
+    files["dialect.obj"] =
+        "\xef\xbb\xbf# C:\\a\\\rV 0 0 0 1\rv 1 0 0\rv 1 1 0 # far\rv 0.5 0.25 \\\r0\rv 1.#QNAN 0 0\rv 0 1 "
+        "0\rvt 0 0\rvn 0 0 1\r"
+        "f 1/ 2// 3/1/ 4/1/1 6//1\rfo -6 -4 6\rl 1 2\rsurf 0 1 0 1 1 2\r";
     files["a.mesh"] =
         "MeshVersionFormatted 1\nDimension 3\nVertices 3\n0 0 0 0\n1 0 0 0\n0 1 0 0\nTriangles 1\n1 2 3 "
         "0\nEnd\n";

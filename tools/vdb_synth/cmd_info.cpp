@@ -6,6 +6,7 @@
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/point_file.h"
 #include "libvdbsynth/io/raster_file.h"
+#include "libvdbsynth/raster/raster_alignment.h"
 
 #include <nlohmann/json.hpp>
 
@@ -74,6 +75,9 @@ Json rasterInfo(const std::string& path, const Run& run) {
     if (raster.knownSpacing) {
         info["spacing"] = triple(raster.spacing);
         info["origin"] = triple(raster.origin);
+        if (!runAlongWorld(raster.axes))
+            info["axes"] =
+                Json::array({triple(raster.axes[0]), triple(raster.axes[1]), triple(raster.axes[2])});
         info["unit"] = raster.unit.empty() ? Json(nullptr) : Json(raster.unit);
     }
     return info;

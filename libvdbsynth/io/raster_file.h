@@ -25,10 +25,13 @@ struct RasterReadOptions {
 ///   or float, strips or tiles, GDAL's no-data value, GeoTIFF's pixel size: metres, or degrees converted to
 ///   metres at the image's middle), exr (Y, else R G B, else the first channel). A pixel of alpha zero has no
 ///   data; other alpha is ignored.
-/// - npy (any real type, either order: the last index runs along columns; two or three dimensions),
-///   vti (ascii, inline and appended base64, raw, zlib), nii (NIfTI-1 and 2; axes flipped and permuted
-///   to point to the patient's right, front and top; an oblique rotation is ignored with a note),
-///   sgems and gslib text, inr.
+/// - npy (any real type, either order: the last index runs along columns; two or three dimensions, of four
+///   the first or a short last one counts channels, of three a last one of 3 or 4 bytes holds colours),
+///   vti (ascii, inline and appended base64, raw, zlib; one or more pieces; values of points or cells,
+///   vectors by their length; origin, spacing and direction), nii (NIfTI-1 and 2; placed by sform, qform or
+///   voxel sizes, in this order; frames as `volume1`, ...), sgems and gslib text (one of its variables), inr.
+///   Axes are exchanged and reversed to point along those of the world; a rotation that remains is in
+///   Raster::axes.
 /// @throw Error Io, BadData (truncated, corrupt, an unsupported kind of file or data, no array of that name),
 /// EmptyInput (no samples), Memory, InvalidOption (extension)
 /// @par Cost    O(samples), four bytes per sample and channel besides the file   @par Repeats yes

@@ -60,6 +60,7 @@ Extent extentOf(const std::string& path, const char* text) {
 }
 
 std::vector<VtkArray> arraysOf(const std::string& path, const pugi::xml_node& piece) {
+    constexpr std::size_t kMostArrays = 1000;
     std::vector<VtkArray> arrays;
     for (const char* kind : {"PointData", "CellData"})
         for (const pugi::xml_node& node : piece.child(kind).children("DataArray")) {
@@ -79,6 +80,8 @@ std::vector<VtkArray> arraysOf(const std::string& path, const pugi::xml_node& pi
                 refuse(path, "its array " + array.name + " has " + std::to_string(array.components) +
                                  " components; 1 to 1000 are read");
             arrays.push_back(array);
+            if (arrays.size() > kMostArrays)
+                refuse(path, "has over " + std::to_string(kMostArrays) + " arrays");
         }
     return arrays;
 }

@@ -161,6 +161,10 @@ void requireModelPath(const std::string& path) {
         if (extensionOf(path) == archive)
             throw Error(ErrorCode::InvalidOption,
                         path + ": is an archive; unpack it and name one of its files (.gz is read directly)");
+    for (const char* part : {"hdr", "img"})
+        if (readExtensionOf(path) == part)
+            throw Error(ErrorCode::InvalidOption,
+                        path + ": is one of a pair of files (Analyze 7.5 or NIfTI); convert it to one .nii");
     throw Error(ErrorCode::InvalidOption,
                 path +
                     ": unknown extension; models are .vdb, meshes .obj, .ply, .stl, .off, .gltf, .glb, "

@@ -10,6 +10,7 @@
 #include "tests/support/makers.h"
 #include "tests/support/raster_files.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/volume_dialects.h"
 #include "tests/support/whole_files.h"
 
 using namespace vdbsynth;
@@ -188,4 +189,28 @@ TEST_CASE("chosenArray: the named one, else the standard one with a note, unknow
     const std::vector<std::string> many(1000, "n");
     CHECK(test::thrownBy([&] { chosenArray("a", many, 0, {"x"}, ctx); }).message.size() < 200);
     CHECK(test::thrownBy([&] { chosenArray("a", {}, 0, {"x"}, ctx); }).code == int(ErrorCode::BadData));
+}
+
+TEST_CASE("readers of volumes: dialects cut short or with bytes changed give a result or an Error",
+          "[io][property]") {
+    RunContext ctx;
+    ctx.maxMemory = 100000000;
+    std::size_t refusals = 0, number = 0;
+    for (const auto& [kind, whole] : test::volumeDialects()) {
+        const Reader reader = kReaders.at(kind);
+        CAPTURE(kind, number);
+        CHECK(test::thrownBy([&, content = whole] { reader("a", content, {}, ctx); }).message == "");
+        Random random(7, number++);
+        for (int round = 0; round < 300; ++round) {
+            std::string content = whole;
+            if (round % 3 == 0) content.resize(std::size_t(random.uniform(0, double(content.size()))));
+            for (int i = 0; i < round % 8 && !content.empty(); ++i)
+                content[std::size_t(random.uniform(0, double(content.size())))] =
+                    char(random.uniform(0, 256));
+            const test::Thrown thrown = test::thrownBy([&] { reader("a", content, {}, ctx); });
+            refusals += thrown.code >= 0 ? 1 : 0;
+            for (const char c : thrown.message) REQUIRE((c >= ' ' || c < 0));
+        }
+    }
+    CHECK(refusals > 500);
 }

@@ -1,9 +1,11 @@
 // Writes a small whole file of every kind into FOLDER/KIND/, where the fuzz targets begin. Usage: fuzz_seeds
 // FOLDER
+#include "tests/support/volume_dialects.h"
 #include "tests/support/whole_files.h"
 
 #include <filesystem>
 #include <fstream>
+#include <string>
 
 int main(int argc, char** argv) {
     if (argc != 2) return 2;
@@ -13,6 +15,12 @@ int main(int argc, char** argv) {
             std::filesystem::path(argv[1]) / std::filesystem::path(name).extension().string().substr(1);
         std::filesystem::create_directories(kind);
         std::ofstream(kind / name, std::ios::binary) << content;
+    }
+    std::size_t number = 0;
+    for (const auto& [kind, content] : vdbsynth::test::volumeDialects()) {
+        const std::filesystem::path name =
+            std::filesystem::path(argv[1]) / kind / ("dialect" + std::to_string(++number));
+        std::ofstream(name, std::ios::binary) << content;
     }
     return 0;
 }

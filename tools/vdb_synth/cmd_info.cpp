@@ -6,6 +6,7 @@
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/point_file.h"
 #include "libvdbsynth/io/raster_file.h"
+#include "libvdbsynth/raster/raster_alignment.h"
 
 #include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
 #include "tools/vdb_synth/surface_json.h"
@@ -61,7 +62,7 @@ Json pointsInfo(const std::string& path, const Run& run) {
 }
 
 Json rasterInfo(const std::string& path, const Run& run) {
-    const Raster raster = readRaster(path, run.context);
+    const Raster raster = readRaster(path, {run.arguments.text("grid")}, run.context);
     const RasterRange range = rangeOf(raster);
     Json info{{"file", run.withoutTemporaries(path)},
               {"kind", raster.stack || raster.size.z > 1 ? "volume" : "image"},
@@ -74,9 +75,13 @@ Json rasterInfo(const std::string& path, const Run& run) {
               {"distinct_values", range.distinct.empty() ? Json("over 256") : Json(range.distinct.size())},
               {"samples_without_data", range.missing},
               {"infinite_samples", range.infinite}};
+    if (raster.arrays.size() > 1) info["arrays"] = raster.arrays;
     if (raster.knownSpacing) {
         info["spacing"] = triple(raster.spacing);
         info["origin"] = triple(raster.origin);
+        if (!runAlongWorld(raster.axes))
+            info["axes"] =
+                Json::array({triple(raster.axes[0]), triple(raster.axes[1]), triple(raster.axes[2])});
         info["unit"] = raster.unit.empty() ? Json(nullptr) : Json(raster.unit);
     }
     return info;

@@ -1,5 +1,6 @@
 #include "libvdbsynth/pipeline/convert/model.h"
 #include "libvdbsynth/raster/height_field.h"
+#include "libvdbsynth/raster/raster_alignment.h"
 #include "libvdbsynth/raster/volume_field.h"
 
 #include "libvdbsynth/base/error.h"
@@ -110,9 +111,22 @@ LevelSet atVoxelSize(const std::string& path, const LevelSet& model, const Model
     return resampled(model, wanted, ctx);
 }
 
+// Voxels of the field's directions and origin; a rotation stays in the transform, so nothing is resampled.
+void placeInWorld(const RasterField& field, openvdb::FloatGrid& grid) {
+    const Vec3d& o = field.origin;
+    if (!runAlongWorld(field.axes)) {
+        // OpenVDB multiplies from the left: the rows are the steps from voxel to voxel.
+        openvdb::Mat4d matrix = openvdb::Mat4d::identity();
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) matrix(i, j) = field.axes[std::size_t(i)][j] * field.voxelSize;
+        grid.setTransform(openvdb::math::Transform::createLinearTransform(matrix));
+    }
+    if (!(o.x == 0 && o.y == 0 && o.z == 0)) grid.transform().postTranslate({o.x, o.y, o.z});
+}
+
 // An image as a slab, a volume by its threshold or labels; both have a domain.
 LevelSet loadRaster(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
-    const Raster raster = readRaster(path, ctx);
+    const Raster raster = readRaster(path, {options.grid}, ctx);
     const bool image = !raster.stack && raster.size.z == 1 && !options.imageAsVolume;
     if (image && (options.volume.threshold || !options.volume.labels.empty()))
         throw Error(ErrorCode::InvalidOption,
@@ -126,8 +140,7 @@ LevelSet loadRaster(const std::string& path, const ModelOptions& options, const 
     if (!field.description.empty()) message(ctx, MessageLevel::Note, path + ": " + field.description);
     LevelSet model = modelFromField(field.field, kRasterFieldLimit, /* exact= */ false, field.domain,
                                     field.voxelSize, path, "no part of it is solid", ctx);
-    const Vec3d& o = field.origin;
-    if (!(o.x == 0 && o.y == 0 && o.z == 0)) model.grid->transform().postTranslate({o.x, o.y, o.z});
+    placeInWorld(field, *model.grid);
     return image ? model : atVoxelSize(path, model, options, ctx);
 }
 
@@ -148,6 +161,10 @@ void requireModelPath(const std::string& path) {
         if (extensionOf(path) == archive)
             throw Error(ErrorCode::InvalidOption,
                         path + ": is an archive; unpack it and name one of its files (.gz is read directly)");
+    for (const char* part : {"hdr", "img"})
+        if (readExtensionOf(path) == part)
+            throw Error(ErrorCode::InvalidOption,
+                        path + ": is one of a pair of files (Analyze 7.5 or NIfTI); convert it to one .nii");
     throw Error(ErrorCode::InvalidOption,
                 path +
                     ": unknown extension; models are .vdb, meshes .obj, .ply, .stl, .off, .gltf, .glb, "

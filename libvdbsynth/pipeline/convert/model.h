@@ -15,7 +15,8 @@ struct ModelOptions {
                            ///< note. A VDB is resampled.
     double halfWidth = 3;  ///< [voxels] of the level set made from a mesh, 1.5..100
     SolidOptions solid;    ///< how to treat meshes that are not watertight
-    std::string grid;      ///< which grid of a VDB file; empty: see VdbReadOptions
+    std::string grid;      ///< which grid of a VDB file or array of a raster file; empty: see VdbReadOptions
+                           ///< and RasterReadOptions
     std::optional<double> iso;  ///< makes a fog volume a solid
     HeightOptions heights;      ///< of images; its voxel size and resolution are those above
     VolumeOptions volume;       ///< of volumes

@@ -3,6 +3,7 @@
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/convert/far_grid.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set_steps.h"
+#include "libvdbsynth/vdb/convert/surface_kept.h"
 #include "libvdbsynth/vdb/wall.h"
 
 #include "libvdbsynth/base/number_text.h"
@@ -301,6 +302,13 @@ FloatGridPtr solidByWinding(const Mesh& indexMesh, const Conversion& to) {
     Stage stage(to.ctx, "mesh to level set", 1);
     const BrickField field = soupToField(indexMesh, to.name, to.ctx);
     stage.advance();
+    float value = 0;
+    if (field.constantIn(field.box(), value)) {
+        // Nothing is inside, which the comparison with the mesh will say.
+        const FloatGridPtr none = openvdb::FloatGrid::create(float(to.halfWidth * to.voxelSize));
+        none->setTransform(openvdb::math::Transform::createLinearTransform(to.voxelSize));
+        return none;
+    }
     return levelSetOf(field, to.voxelSize, float(to.halfWidth), to.name, to.ctx);
 }
 

@@ -4,6 +4,7 @@
 #include "libvdbsynth/vdb/convert/far_grid.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set_steps.h"
+#include "libvdbsynth/vdb/convert/surface_kept.h"
 
 #include <cmath>
 #include <string>

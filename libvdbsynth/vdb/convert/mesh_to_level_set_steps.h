@@ -29,16 +29,4 @@ void addNested(openvdb::FloatGrid& whole, openvdb::FloatGrid& next, bool isVoid,
 FloatGridPtr levelSetOf(const BrickField& field, double voxelSize, float halfWidth, const std::string& name,
                         const RunContext& ctx = {});
 
-/// Compares a level set with what it was made from: what was lost is a warning, with what helps, and its
-/// share of the surface what lostShare gives.
-/// @param mesh  [voxels] of the grid's index space, its parts oriented, without duplicate faces
-/// @throw Error Unusable (over half of its outer surface is lost)
-void requireKept(const Mesh& mesh, openvdb::FloatGrid& grid, const std::string& name,
-                 const RunContext& ctx = {});
-
-/// The same for points: a place counts as lost farther than a voxel and its spacing from the surface.
-/// @param points, spacings  [voxels] of the field
-void requirePointsKept(const std::vector<Vec3f>& points, const std::vector<float>& spacings,
-                       const BrickField& field, const std::string& name, const RunContext& ctx = {});
-
 }  // namespace vdbsynth

@@ -1,10 +1,10 @@
-// What a level set lost of the mesh it was made from.
+#include "libvdbsynth/vdb/convert/surface_kept.h"
+
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/solid/surface_loss.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
-#include "libvdbsynth/vdb/convert/mesh_to_level_set_steps.h"
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/level_set.h"
 
@@ -47,8 +47,11 @@ void noteBounds(const MeshSummary& summary, const openvdb::FloatGrid& grid, cons
 
 void requireKept(const Mesh& mesh, openvdb::FloatGrid& grid, const std::string& name, const RunContext& ctx) {
     const openvdb::CoordBBox active = grid.evalActiveVoxelBoundingBox();
-    BrickField field = gatherBricks(grid, fromBBox(active), 1.f, std::numeric_limits<float>::infinity(), ctx);
-    field.translate(fromCoord(active.min()));
+    BrickField field(IndexBox::fromSize({1, 1, 1}), kHalfWidth);
+    if (!active.empty()) {
+        field = gatherBricks(grid, fromBBox(active), 1.f, std::numeric_limits<float>::infinity(), ctx);
+        field.translate(fromCoord(active.min()));
+    }
     const SurfaceLoss loss = surfaceLoss(mesh, field, ctx);
     const std::size_t whole = loss.lostSolids + loss.lostCavities + loss.lostOpen;
     if (loss.share < kSaid && whole == 0 && loss.volumeLeft >= 0.9) return;

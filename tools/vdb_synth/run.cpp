@@ -3,6 +3,7 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/hash.h"
 #include "libvdbsynth/base/machine_memory.h"
+#include "libvdbsynth/base/printable_text.h"
 #include "libvdbsynth/io/path.h"
 #include "tools/vdb_synth/options.h"
 #include "tools/vdb_synth/stop_flag.h"
@@ -88,7 +89,7 @@ Run::Run(const Command& command, Arguments given, const SupervisorLine& line)
         if (level != MessageLevel::Warning && impl.quiet) return;
         impl.progress.clear();
         std::fprintf(stderr, "vdb_synth: %s%s\n", level == MessageLevel::Warning ? "warning: " : "",
-                     inWords(text).c_str());
+                     printableText(inWords(text)).c_str());
     };
     mOutputs = std::make_unique<OutputSet>([&impl](const std::string& path) { impl.line.temporary(path); });
 }

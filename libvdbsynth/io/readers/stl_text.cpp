@@ -37,8 +37,8 @@ public:
 
     MeshContent run(const std::string& path, const RunContext& ctx) {
         while (!mScanner.atEnd()) readWord();
-        if (mOpen || !mCorners.empty())
-            mScanner.fail("the file ends within a facet, behind " + wholeFacets() + "; it is truncated");
+        if (mOpen || !mCorners.empty() || (!mEnded && mUnknownLast && !mSizes.empty()))
+            mScanner.fail("the file ends in the middle, behind " + wholeFacets() + "; it is truncated");
         if (mSizes.empty() && mUnknown > 0) mScanner.fail(mFirstUnknown + " does not belong in an STL file");
         if (!mEnded && mSizes.empty()) mScanner.fail("the file ends without endsolid; it is truncated");
         report(path, ctx);
@@ -73,6 +73,7 @@ private:
     void readWord() {
         const std::string_view text = mScanner.word();
         std::string word = lowerCase(text);
+        mUnknownLast = false;
         if (word == "end" || word == "outer") {
             TextScanner ahead = mScanner;
             const std::string second = lowerCase(ahead.word());
@@ -95,6 +96,7 @@ private:
         } else if (word == "outerloop" || word == "outer" || word == "loop") {
             mBeforeLoop = false;
         } else if (!mBeforeLoop) {  // behind "facet" stands its normal
+            mUnknownLast = true;
             if (mUnknown++ == 0)
                 mFirstUnknown = "\"" + printableText(text.substr(0, 40)) + "\" in line " +
                                 std::to_string(mScanner.line());
@@ -148,6 +150,7 @@ private:
     bool mOpen = false;        // within a facet, before its end
     bool mBeforeLoop = false;  // between "facet" and its loop
     bool mEnded = false, mCommas = false;
+    bool mUnknownLast = false;  // the last word may be one that was cut
     std::size_t mUnknown = 0, mLarge = 0;
     std::string mFirstUnknown;
 };

@@ -154,6 +154,7 @@ TEST_CASE("readStlText: errors name what is wrong and where", "[io][error]") {
          "behind 12 whole facets; it is truncated"},
         {"solid a\n" + body + "facet normal 0 0 1\nouter", "behind 12 whole facets; it is truncated"},
         {"solid a\n" + body + "facet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0", "truncated"},
+        {"solid a\n" + body + "fac", "behind 12 whole facets; it is truncated"},
         {"solid a\n", "truncated"},
         {"solid waste and other words\nof a letter\n", "\"of\" in line 2 does not belong in an STL file"},
         {"solid\nfacet\nouter loop\nendloop\nendfacet\nendsolid\n",

@@ -161,7 +161,7 @@ class Kinds(Reported):
                 self.read_as(self.write("a.stl", text.encode()), 1000)
         self.read_as(self.write("b.stl", "solid box\n" + ascii_facets(facets)), 1000, says="warning: ")
         self.read_as(self.write("c.stl", plain.replace("vertex 10", "vertex 10,0")), 1000, says="decimal commas")
-        for size in range(20, len(plain) - 20, 97):
+        for size in range(20, len(plain) - 20, 193):
             done = self.run_tool("info", self.write("d.stl", plain[:size]))
             self.assertIn("truncated" if done.returncode else "whole facets are read, more may be missing", done.stderr)
 
@@ -183,7 +183,7 @@ class Kinds(Reported):
         junk = bytes([0x1B, 0x5B, 0x32, 0x4A, 0xFF, 0x80, 0xC3, 0x01])
         files = {"a.stl": b"solid x\n facet normal 0 0 0\nouter loop\nvertex 0 " + junk, "a.off": b"OFF\n3 1 0\n" + junk + b" 0 0\n",
                  "b.off": junk, "a.ply": b"ply\nformat " + junk + b"\n", "a.obj": b"v 0 " + junk + b" 0\n", "a.xyz": junk + b" 1 2\n",
-                 "a.pcd": junk + b"\n", "a.mesh": b"MeshVersionFormatted 1\n" + junk + b" 3\n", "a.stl.gz": b"\x1f\x8b" + junk}
+                 "a.pcd": junk + b"\n", "a.mesh": b"MeshVersionFormatted " + junk, "a.stl.gz": b"\x1f\x8b" + junk}
         for name, content in files.items():
             with self.subTest(name=name):
                 done = subprocess.run([PROGRAM, "info", self.write(name, content)], capture_output=True)
@@ -196,7 +196,7 @@ class Kinds(Reported):
         wholes = {"m.stl": binary(facets), "n.stl": ("solid\n" + ascii_facets(facets) + "endsolid").encode(),
                   "m.off": b"OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"}
         for name, whole in wholes.items():
-            for seed in range(25):
+            for seed in range(8):
                 draw = random.Random(seed)
                 content = bytearray(whole)
                 for _ in range(draw.choice([1, 3, 20])):

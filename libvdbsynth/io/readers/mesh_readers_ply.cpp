@@ -12,6 +12,14 @@
 namespace vdbsynth {
 namespace {
 
+bool isVertices(const PlyElement& element) {
+    return element.name == "vertex";
+}
+
+bool isFaces(const PlyElement& element) {
+    return element.name == "face";
+}
+
 bool isStrips(const PlyElement& element) {
     return element.name == "tristrips";
 }
@@ -155,8 +163,8 @@ void readStrips(PlyBody& body, const PlyElement& element, std::size_t vertices, 
 const PlyElement& verticesOf(const PlyBody& body, const PlyHeader& header) {
     const PlyElement* vertices = nullptr;
     for (const PlyElement& element : header.elements) {
-        if (!isPlyVertices(element)) continue;
-        if (vertices) body.fail("the header has two elements of vertices, which is not supported");
+        if (!isVertices(element)) continue;
+        if (vertices) body.fail("the header has two elements \"vertex\", which is not supported");
         vertices = &element;
     }
     if (!vertices) body.fail("the header has no element \"vertex\"");
@@ -171,7 +179,7 @@ std::string skippedOf(const PlyHeader& header) {
     };
     for (const PlyElement& element : header.elements) {
         if (element.count == 0) continue;
-        const bool vertices = isPlyVertices(element), faces = isPlyFaces(element) || isStrips(element);
+        const bool vertices = isVertices(element), faces = isFaces(element) || isStrips(element);
         const PlyProperty* corners = faces ? cornersOf(element) : nullptr;
         if (!vertices && !faces) add("element ", element.name);
         for (const PlyProperty& property : element.properties)
@@ -191,7 +199,7 @@ void report(const std::string& path, const PlyHeader& header, const PlyBody& bod
         message(ctx, level, path + ": " + text);
     };
     for (const PlyElement& element : header.elements) {
-        if (element.count == 0 || !(isPlyFaces(element) || isStrips(element))) continue;
+        if (element.count == 0 || !(isFaces(element) || isStrips(element))) continue;
         const PlyProperty* corners = cornersOf(element);
         if (!corners)
             say(MessageLevel::Warning, "its faces have no list of whole numbers, so no corners");
@@ -228,9 +236,9 @@ MeshContent readPly(const std::string& path, const std::string& content, const R
     const std::size_t vertices = std::size_t(verticesOf(body, header).count);
     MeshContent mesh;
     for (const PlyElement& element : header.elements) {
-        if (isPlyVertices(element))
+        if (isVertices(element))
             readVertices(body, element, mesh.points, nullptr, mesh.attributes);
-        else if (isPlyFaces(element))
+        else if (isFaces(element))
             readFaces(body, element, vertices, mesh);
         else if (isStrips(element))
             readStrips(body, element, vertices, mesh);
@@ -260,7 +268,7 @@ PointContent readPlyPoints(const std::string& path, const std::string& content, 
 std::int64_t plyFaceCount(const std::string& path, const std::string& content) {
     std::int64_t faces = 0;
     for (const PlyElement& element : readPlyHeader(path, content).elements)
-        if (isPlyFaces(element) || isStrips(element)) faces += element.count > 0 ? 1 : 0;
+        if (isFaces(element) || isStrips(element)) faces += element.count > 0 ? 1 : 0;
     return faces;
 }
 

@@ -73,6 +73,18 @@ std::size_t bodyBegin(const std::string& content, std::size_t at) {
     return end == std::string::npos ? content.size() : end + 1;
 }
 
+// Gives the first element of one of these names the usual one, unless another has it.
+void rename(PlyHeader& header, const char* usual, const std::vector<std::string>& others) {
+    const auto named = [&header](const std::string& name) {
+        return std::find_if(header.elements.begin(), header.elements.end(),
+                            [&name](const PlyElement& element) { return lowerCase(element.name) == name; });
+    };
+    auto found = named(usual);
+    for (auto other = others.begin(); found == header.elements.end() && other != others.end(); ++other)
+        found = named(*other);
+    if (found != header.elements.end()) found->name = usual;
+}
+
 template <typename T>
 double as(const unsigned char* bytes) {
     T value;
@@ -106,21 +118,13 @@ PlyHeader readPlyHeader(const std::string& path, const std::string& content) {
         } else if (word == "end_header") {
             if (!format) scanner.fail("the header names no format");
             header.bytes = bodyBegin(content, scanner.position());
+            rename(header, "vertex", {"vertices", "point", "points"});
+            rename(header, "face", {"faces", "polygon", "polygons"});
             return header;
         }
         scanner.skipLine();
     }
     scanner.fail("the header has no end_header; the file is truncated");
-}
-
-bool isPlyVertices(const PlyElement& element) {
-    const std::string name = lowerCase(element.name);
-    return name == "vertex" || name == "vertices" || name == "point" || name == "points";
-}
-
-bool isPlyFaces(const PlyElement& element) {
-    const std::string name = lowerCase(element.name);
-    return name == "face" || name == "faces" || name == "polygon" || name == "polygons";
 }
 
 PlyBody::PlyBody(const std::string& path, const std::string& content, const PlyHeader& header)

@@ -38,10 +38,6 @@ struct PlyHeader {
 /// @throw Error BadData
 PlyHeader readPlyHeader(const std::string& path, const std::string& content);
 
-/// True for the elements that hold the vertices and the faces, by any of the names that programs give them.
-bool isPlyVertices(const PlyElement& element);
-bool isPlyFaces(const PlyElement& element);
-
 /// Reads the numbers of a PLY body, one after the other, from text or bytes. Where every element of an ascii
 /// body stands on a line of its own, words behind those that the header declares are skipped.
 class PlyBody {

@@ -112,7 +112,7 @@ TEST_CASE("readPly: what is guessed or left out is said", "[io][error]") {
 TEST_CASE("readPly: errors", "[io][error]") {
     const std::pair<std::string, std::string> all[] = {
         {ply(kFace, kCorners), "no element \"vertex\""},
-        {ply(kVertex + kVertex + kFace, kPoints + kPoints + kCorners), "two elements of vertices"},
+        {ply(kVertex + kVertex + kFace, kPoints + kPoints + kCorners), "two elements \"vertex\""},
         {ply(replaced(kVertex, "float y", "float t") + kFace, kPoints + kCorners), "the vertices have no y"},
         {ply(kVertex + kFace, kPoints + replaced(kCorners, "3 1 2 3", "3 1 2 4")),
          "face 2 uses vertex 4 of 4"},

@@ -11,10 +11,10 @@ int main(int argc, char** argv) {
     if (argc != 2) return 2;
     const vdbsynth::test::TemporaryFolder folder;
     for (const auto& [name, content] : vdbsynth::test::wholeFiles(folder)) {
-        const std::filesystem::path kind =
-            std::filesystem::path(argv[1]) / std::filesystem::path(name).extension().string().substr(1);
+        const std::filesystem::path file(name),
+            kind = std::filesystem::path(argv[1]) / file.extension().string().substr(1);
         std::filesystem::create_directories(kind);
-        std::ofstream(kind / name, std::ios::binary) << content;
+        std::ofstream(kind / file.stem(), std::ios::binary) << content;
     }
     std::size_t number = 0;
     for (const auto& [kind, content] : vdbsynth::test::volumeDialects()) {

@@ -3,6 +3,7 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/hash.h"
 #include "libvdbsynth/base/machine_memory.h"
+#include "libvdbsynth/base/printable_text.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
@@ -91,7 +92,7 @@ Run::Run(const Command& command, Arguments given, const SupervisorLine& line)
         if (level != MessageLevel::Warning && impl.quiet) return;
         impl.progress.clear();
         std::fprintf(stderr, "vdb_synth: %s%s\n", level == MessageLevel::Warning ? "warning: " : "",
-                     inWords(text).c_str());
+                     printableText(inWords(text)).c_str());
     };
     mOutputs = std::make_unique<OutputSet>([&impl](const std::string& path) { impl.line.temporary(path); });
 }

@@ -44,16 +44,20 @@ Json meshInfo(const std::string& path, const Run& run) {
 
 Json pointsInfo(const std::string& path, const Run& run) {
     const PointFile file = readPoints(path, run.context);
+    const Vec3d& origin = file.cloud.origin;
     Vec3f low = file.cloud.points.front(), high = low;
     for (const Vec3f& p : file.cloud.points)
         for (int axis = 0; axis < 3; ++axis) {
             low[axis] = std::min(low[axis], p[axis]);
             high[axis] = std::max(high[axis], p[axis]);
         }
-    return Json{{"file", run.withoutTemporaries(path)},    {"kind", "points"},
-                {"points", file.cloud.points.size()},      {"invalid_points", file.invalid},
-                {"normals", !file.cloud.normals.empty()},  {"bounds_min", triple(cast<double>(low))},
-                {"bounds_max", triple(cast<double>(high))}};
+    return Json{{"file", run.withoutTemporaries(path)},
+                {"kind", "points"},
+                {"points", file.cloud.points.size()},
+                {"invalid_points", file.invalid},
+                {"normals", !file.cloud.normals.empty()},
+                {"bounds_min", triple(origin + cast<double>(low))},
+                {"bounds_max", triple(origin + cast<double>(high))}};
 }
 
 Json rasterInfo(const std::string& path, const Run& run) {

@@ -10,12 +10,6 @@
 namespace vdbsynth {
 namespace {
 
-struct Header {
-    SampleType type = SampleType::U8;
-    bool swap = false, columnsFirst = false;
-    std::vector<std::int64_t> shape;
-};
-
 // The text after a key of the header's dictionary.
 std::string valueOf(const std::string& path, const std::string& text, const std::string& key) {
     const std::size_t at = text.find("'" + key + "'");
@@ -37,11 +31,15 @@ SampleType typeOf(const std::string& path, const std::string& code) {
     return found->second;
 }
 
-Header parseHeader(const std::string& path, const std::string& text) {
-    Header header;
+NpyHeader parseHeader(const std::string& path, const std::string& text) {
+    NpyHeader header;
     const std::string descr = valueOf(path, text, "descr");
     if (descr.size() < 5 || (descr[0] != '\'' && descr[0] != '"'))
-        throw Error(ErrorCode::BadData, path + ": holds records; only arrays of plain numbers are supported");
+        throw Error(ErrorCode::BadData,
+                    path +
+                        ": holds records (a structured array); only arrays of plain numbers are supported; "
+                        "points with fields x, y, z can be saved as one array of three columns, for "
+                        "example with numpy.lib.recfunctions.structured_to_unstructured");
     const std::size_t end = descr.find(descr[0], 1);
     const std::string code = descr.substr(1, end == std::string::npos ? 0 : end - 1);
     header.swap = !code.empty() && code[0] == '>';
@@ -64,7 +62,7 @@ Header parseHeader(const std::string& path, const std::string& text) {
 
 }  // namespace
 
-Raster readNpy(const std::string& path, const std::string& content, const RunContext& ctx) {
+NpyHeader readNpyHeader(const std::string& path, const std::string& content) {
     if (content.compare(0, 6, "\x93NUMPY") != 0 || content.size() < 12)
         throw Error(ErrorCode::BadData, path + ": not an npy file");
     const bool longHeader = content[6] > 1;
@@ -72,7 +70,14 @@ Raster readNpy(const std::string& path, const std::string& content, const RunCon
     std::memcpy(&length, content.data() + 8, longHeader ? 4 : 2);
     const std::size_t start = (longHeader ? 12 : 10) + std::size_t(length);
     if (start > content.size()) throw Error(ErrorCode::BadData, path + ": truncated in its header");
-    const Header header = parseHeader(path, content.substr(longHeader ? 12 : 10, length));
+    NpyHeader header = parseHeader(path, content.substr(longHeader ? 12 : 10, length));
+    header.bytes = start;
+    return header;
+}
+
+Raster readNpy(const std::string& path, const std::string& content, const RunContext& ctx) {
+    const NpyHeader header = readNpyHeader(path, content);
+    const std::size_t start = header.bytes;
     std::vector<std::int64_t> sides = header.shape;  // slowest first
     const std::size_t dimensions = sides.size();
     if (dimensions < 2 || dimensions > 3)

@@ -96,8 +96,8 @@ PointContent readNpyPoints(const std::string& path, const std::string& content, 
     }
     message(ctx, MessageLevel::Note,
             path + ": its " + std::to_string(first) + " x " + std::to_string(second) + " numbers read as " +
-                std::to_string(rows) + " points of " + std::to_string(columns) +
-                " numbers; `imageAsVolume` reads them as a volume of one slice");
+                std::to_string(rows) + " points, not as an image of " + std::to_string(columns) +
+                " pixels' width");
     return contentOf(path, table, ctx);
 }
 

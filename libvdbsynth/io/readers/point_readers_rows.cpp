@@ -43,13 +43,15 @@ private:
     const RunContext& mContext;
     PointTable mTable;
     std::vector<double> mNumbers;  // of the present line
-    std::vector<RowWord> mWords;   // in it
+    ColumnRoles::Triple mPlace{0, 1, 2};
+    std::vector<RowWord> mWords;  // in it
     std::vector<std::string> mCommentNames;
-    std::size_t mHeaderLines = 0, mHeaderLine = 0, mLongRows = 0;
+    bool mFirst = true;  // of the lines
+    std::size_t mHeaderLines = 0, mHeaderAt = 0, mLongRows = 0;
     std::string mHeaderWord;
     std::vector<std::size_t> mTextRows;  // per column, rows with a word where a number should be
     // Counts of points, as in .pts: of all rows, or of those of a scan.
-    std::size_t mBlocks = 0, mClaimed = 0, mBlockRow = 0, mBlockLine = 0, mWrongCounts = 0;
+    std::size_t mBlocks = 0, mClaimed = 0, mBlockRow = 0, mBlockAt = 0, mWrongCounts = 0;
 };
 
 // Formats that share an extension with rows of points.
@@ -67,7 +69,8 @@ void RowReader::refuseOtherKinds(const std::vector<std::string>& names) {
 
 void RowReader::takeNames(bool comment) {
     const std::vector<std::string> names = mText.names();
-    if (mText.lineNumber() == 1 || !comment) refuseOtherKinds(names);
+    if (mFirst || !comment) refuseOtherKinds(names);
+    mFirst = false;
     if (comment) {
         std::vector<std::string> bare = names;
         // "# x y z": the sign is a word of its own.
@@ -77,7 +80,7 @@ void RowReader::takeNames(bool comment) {
         return;
     }
     if (mHeaderLines++ == 0) {
-        mHeaderLine = mText.lineNumber();
+        mHeaderAt = mText.position();
         const std::string_view line = mText.line();
         mHeaderWord = shownWord(line.substr(0, line.find_first_of(" \t,;|")));
     }
@@ -100,7 +103,7 @@ bool RowReader::readHeader() {
     if (mHeaderLines == 0 && mBlocks == 0) return false;
     if (mHeaderLines == 0) mText.fail("a count of points and no rows; the file is truncated");
     throw Error(ErrorCode::BadData,
-                mPath + ":" + std::to_string(mHeaderLine) + ": " + mHeaderWord +
+                mPath + ":" + std::to_string(mText.lineNumberAt(mHeaderAt)) + ": " + mHeaderWord +
                     " is not a number, and no rows of numbers follow; a point is a row of three coordinates" +
                     (mBlocks > 0 ? " (atoms of molecules are not read)" : ""));
 }
@@ -122,16 +125,19 @@ void RowReader::beginBlock() {
     ++mBlocks;
     mClaimed = std::size_t(claimed);
     mBlockRow = mTable.rows();
-    mBlockLine = mText.lineNumber();
+    mBlockAt = mText.position();
 }
 
 void RowReader::endBlock(bool atEnd) {
     if (mBlocks == 0) return;
     const std::size_t rows = mTable.rows() - mBlockRow;
-    if (rows == mClaimed) return;
-    if (mWrongCounts++ > 0) return;
-    say(MessageLevel::Warning, "line " + std::to_string(mBlockLine) + " counts " + std::to_string(mClaimed) +
-                                   " points, " + std::to_string(rows) + " rows are there" +
+    mWrongCounts += rows != mClaimed;
+    if (atEnd && mWrongCounts > 1)
+        say(MessageLevel::Warning, std::to_string(mWrongCounts) + " of its counts are not those of the rows");
+    if (rows == mClaimed || mWrongCounts > 1) return;
+    say(MessageLevel::Warning, "line " + std::to_string(mText.lineNumberAt(mBlockAt)) + " counts " +
+                                   std::to_string(mClaimed) + " points, " + std::to_string(rows) +
+                                   " rows are there" +
                                    (atEnd && rows < mClaimed ? "; the file is truncated" : "; all are read"));
 }
 
@@ -163,14 +169,20 @@ void RowReader::nameColumns() {
     if (mTable.names.empty() && mHeaderLines > 0)
         say(MessageLevel::Note,
             std::to_string(mHeaderLines) + " lines above its rows skipped, which name no columns x, y and z");
+    // These extensions say what the columns are.
+    const std::string extension = readExtensionOf(mPath);
+    if (mTable.names.empty() && columns == 6 && extension == "xyzn")
+        mTable.names = {"x", "y", "z", "nx", "ny", "nz"};
+    if (mTable.names.empty() && columns == 6 && extension == "xyzrgb")
+        mTable.names = {"x", "y", "z", "r", "g", "b"};
+    mPlace = rolesByName(mTable.names, columns).place;
 }
 
 // Words where numbers should be are fine in columns that are not coordinates.
 void RowReader::addWords() {
-    const ColumnRoles::Triple place = rolesByName(mTable.names, mTable.columns).place;
     for (const RowWord& word : mWords) {
         if (word.place >= mTable.columns) continue;
-        if (std::find(place.begin(), place.end(), word.place) != place.end())
+        if (std::find(mPlace.begin(), mPlace.end(), word.place) != mPlace.end())
             mText.fail(shownWord(word.text) + " is not a number");
         ++mTextRows[word.place];
     }

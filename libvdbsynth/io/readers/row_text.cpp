@@ -57,7 +57,7 @@ bool mayHaveDecimalComma(std::string_view word) {
     std::size_t commas = 0;
     for (std::size_t i = 0; i < word.size(); ++i) {
         if (word[i] != ',') continue;
-        const bool between = i + 1 < word.size() && isDigit(word[i + 1]) && (i == 0 || word[i - 1] != ',');
+        const bool between = i + 1 < word.size() && i > 0 && isDigit(word[i - 1]) && isDigit(word[i + 1]);
         if (!between) return false;
         ++commas;
     }
@@ -139,7 +139,8 @@ bool RowText::beginsWithNumber() const {
     while (at < mEnd && (isBlank(*at) || isSeparator(*at))) ++at;
     const char* end = wordEnd(at);
     double ignored = 0;
-    return end > at && parseLenient({at, std::size_t(end - at)}, mDecimalCommas, ignored);
+    const std::string_view word(at, std::size_t(end - at));
+    return end > at && (parseLenient(word, false, ignored) || parseLenient(word, true, ignored));
 }
 
 bool RowText::endsWithSeparator() const {
@@ -265,8 +266,8 @@ std::vector<std::string> RowText::names() const {
     return names;
 }
 
-std::size_t RowText::lineNumber() const {
-    return std::size_t(std::count(mText, mBegin, '\n')) + 1;
+std::size_t RowText::lineNumberAt(std::size_t position) const {
+    return std::size_t(std::count(mText, mText + position, '\n')) + 1;
 }
 
 void RowText::fail(const std::string& what) const {

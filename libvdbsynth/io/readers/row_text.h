@@ -51,8 +51,11 @@ public:
     /// pipes or commas if there are any, else by blanks.
     std::vector<std::string> names() const;
 
-    /// Line of the present line, from 1.
-    std::size_t lineNumber() const;
+    /// Number of the present line, from 1, or of the one at a position. Costs O(text): for messages.
+    std::size_t lineNumber() const { return lineNumberAt(position()); }
+    std::size_t lineNumberAt(std::size_t position) const;
+    /// Bytes before the present line.
+    std::size_t position() const { return std::size_t(mBegin - mText); }
     /// Bytes from the present line to the end.
     std::size_t bytesLeft() const { return std::size_t(mTextEnd - mBegin); }
     /// @throw Error BadData "PATH:LINE: WHAT"

@@ -1,4 +1,4 @@
-// Writes a small whole file of every kind into FOLDER/KIND/, where the fuzz targets begin. Usage: fuzz_seeds
+// Writes small whole files of every kind into FOLDER/KIND/, where the fuzz targets begin. Usage: fuzz_seeds
 // FOLDER
 #include "tests/support/volume_dialects.h"
 #include "tests/support/whole_files.h"

@@ -61,6 +61,14 @@ inline std::map<std::string, std::string> wholeFiles(const TemporaryFolder& fold
         "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA "
         "binary\n" +
         std::string(24, '\0');
+    files["header.xyz"] = "//X Y Z R G B Heat\r\n0 0 0 255 0 0 0.5\r\n1 0 0 0 255 0 -1\r\n";
+    files["decimal.xyz"] = "\"x\";\"y\";\"z\"\n0,5;0;1\n1,25;2;-3,5e-1\n";
+    files["counted.xyz"] = "2\n0 0 0 -7 255 0 0\n1 0 0 9 0 255 0\n1\n2 0 0 1 0 0 255\n";
+    files["words.xyz"] = "id,x,y,z,kind\n1,0,0,0,tree\n2,1,,0,house\n";
+    files["columns.pcd"] =
+        "# .PCD v.6\nVERSION .6\nCOLUMNS x y z _ rgb\nSIZE 4 4 4 1 4\nTYPE f f f u f\nCOUNT 1 1 1 3 1\n"
+        "POINTS 1\nDATA ascii\n1 2 3 0 0 0 4.2e6\n";
+    files["points.npy"] = npy("<f8", "(3, 30)", raw(std::vector<double>(90, 1.5)));
     const std::vector<float> heights{0, 0.25f, 1, 0.5f};
     writeGreyPng(folder.path("a.png"), 2, 2, heights);
     files["a.png"] = contentOf(folder.path("a.png"));

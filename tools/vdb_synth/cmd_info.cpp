@@ -46,6 +46,7 @@ Json meshInfo(const std::string& path, const Run& run) {
 
 Json pointsInfo(const std::string& path, const Run& run) {
     const PointFile file = readPoints(path, run.context);
+    const Vec3d& origin = file.cloud.origin;
     Vec3f low = file.cloud.points.front(), high = low;
     for (const Vec3f& p : file.cloud.points)
         for (int axis = 0; axis < 3; ++axis) {
@@ -57,8 +58,8 @@ Json pointsInfo(const std::string& path, const Run& run) {
                 {"points", file.cloud.points.size()},
                 {"invalid_points", file.invalid},
                 {"normals", !file.cloud.normals.empty()},
-                {"bounds_min", triple(cast<double>(low) + file.cloud.origin)},
-                {"bounds_max", triple(cast<double>(high) + file.cloud.origin)}};
+                {"bounds_min", triple(origin + cast<double>(low))},
+                {"bounds_max", triple(origin + cast<double>(high))}};
 }
 
 Json rasterInfo(const std::string& path, const Run& run) {

@@ -1,84 +1,20 @@
-// PCD 0.7, the point cloud library's format: a text header, then ascii, binary or LZF-compressed rows.
+// PCD, the point cloud library's format: a text header, then ascii, binary or LZF-compressed rows.
 #include "libvdbsynth/base/checked_product.h"
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/readers/point_readers.h"
-#include "libvdbsynth/io/readers/text_scanner.h"
+#include "libvdbsynth/io/readers/point_readers_steps.h"
+#include "libvdbsynth/io/readers/row_text.h"
 
+#include <algorithm>
 #include <cstring>
-#include <limits>
+#include <initializer_list>
 #include <vector>
 
 namespace vdbsynth {
 namespace {
 
-struct Field {
-    std::string name;
-    std::int64_t size = 4, count = 1, offset = 0;
-    char type = 'F';
-};
-
-struct Header {
-    std::vector<Field> fields;
-    std::int64_t points = -1, rowBytes = 0;
-    std::string data;
-    std::size_t bytes = 0;
-};
-
-void readFieldLine(TextScanner& scanner, const std::string& key, std::vector<Field>& fields) {
-    std::size_t i = 0;
-    for (std::string_view word = scanner.wordOnLine(); !word.empty(); word = scanner.wordOnLine(), ++i) {
-        if (key == "FIELDS") {
-            fields.emplace_back();
-            fields.back().name = std::string(word);
-            continue;
-        }
-        if (i >= fields.size()) scanner.fail(key + " names more fields than FIELDS");
-        std::int64_t number = 0;
-        if (key == "TYPE")
-            fields[i].type = word[0];
-        else if (!parseWhole(word, number) || number < 0 || number > 65536)
-            scanner.fail(key + " is not a list of small whole numbers");
-        else
-            (key == "SIZE" ? fields[i].size : fields[i].count) = number;
-    }
-}
-
-Header readHeader(const std::string& path, const std::string& content) {
-    TextScanner scanner(path, content);
-    Header header;
-    std::int64_t width = -1, height = 1;
-    while (!scanner.atEnd()) {
-        const std::string key(scanner.wordOnLine());
-        if (key == "FIELDS" || key == "SIZE" || key == "TYPE" || key == "COUNT")
-            readFieldLine(scanner, key, header.fields);
-        else if (key == "WIDTH")
-            width = scanner.whole();
-        else if (key == "HEIGHT")
-            height = scanner.whole();
-        else if (key == "POINTS")
-            header.points = scanner.whole();
-        else if (key == "DATA")
-            header.data = std::string(scanner.wordOnLine());
-        else if (key != "VERSION" && key != "VIEWPOINT")
-            scanner.fail("\"" + key.substr(0, 40) + "\" is not a line of a PCD header");
-        scanner.skipLine();
-        if (key != "DATA") continue;
-        header.bytes = scanner.position();
-        if (header.points < 0 && width >= 0 && height >= 0 && height < (1 << 30) && width < (1 << 30))
-            header.points = width * height;
-        for (Field& field : header.fields) {
-            if (field.size != 1 && field.size != 2 && field.size != 4 && field.size != 8)
-                scanner.fail("a field of " + std::to_string(field.size) + " bytes");
-            field.offset = header.rowBytes;
-            header.rowBytes += field.size * field.count;
-        }
-        if (header.points < 0 || header.rowBytes <= 0) scanner.fail("the header has no points or no fields");
-        return header;
-    }
-    scanner.fail("the header has no DATA; the file is truncated");
-}
-
-double numberAt(const char* bytes, const Field& field) {
+double numberAt(const char* bytes, const PcdField& field) {
     const auto as = [bytes](auto value) {
         std::memcpy(&value, bytes, sizeof value);
         return double(value);
@@ -95,62 +31,39 @@ double numberAt(const char* bytes, const Field& field) {
                              : as(std::int64_t());
 }
 
-// LZF: a control byte under 32 is followed by that many and one literal bytes; else its upper three bits are
-// the length and the rest, with the next byte, the distance of bytes to repeat.
-std::string unpackLzf(const std::string& path, std::string_view packed, std::size_t size) {
-    std::string out;
-    out.reserve(size);
-    std::size_t at = 0;
-    const auto next = [&] {
-        if (at >= packed.size()) throw Error(ErrorCode::BadData, path + ": its compressed data is truncated");
-        return std::size_t(static_cast<unsigned char>(packed[at++]));
-    };
-    while (at < packed.size()) {
-        const std::size_t control = next();
-        if (control < 32) {
-            const std::size_t count = control + 1;
-            if (count > packed.size() - at)
-                throw Error(ErrorCode::BadData, path + ": its compressed data is truncated");
-            out.append(packed.substr(at, count));
-            at += count;
-        } else {
-            std::size_t count = (control >> 5) + 2;
-            if (count == 9) count += next();
-            const std::size_t distance = ((control & 31) << 8) + next() + 1;
-            if (distance > out.size())
-                throw Error(ErrorCode::BadData, path + ": its compressed data is corrupt");
-            for (std::size_t i = 0; i < count; ++i) out += out[out.size() - distance];
-        }
-        if (out.size() > size) throw Error(ErrorCode::BadData, path + ": its compressed data is corrupt");
-    }
-    if (out.size() != size) throw Error(ErrorCode::BadData, path + ": its compressed data is truncated");
-    return out;
-}
-
 // Location of a field's values: row by row or, compressed, field by field.
 struct Layout {
     std::string_view bytes;
     bool byField = false;
 };
 
-Layout binaryLayout(const std::string& path, const std::string& content, const Header& header,
-                    std::string& unpacked) {
+Layout binaryLayout(const std::string& path, const std::string& content, const PcdHeader& header,
+                    std::string& unpacked, const RunContext& ctx) {
     const std::optional<std::int64_t> size = checkedProduct({header.points, header.rowBytes});
     const std::string_view rest = std::string_view(content).substr(header.bytes);
     const auto truncated = [&](const char* what) {
         return Error(ErrorCode::BadData, path + ": the header claims " + std::to_string(header.points) +
-                                             " points, more than the file " + what);
+                                             " points of " + std::to_string(header.rowBytes) +
+                                             " bytes, more than the file " + what + "; it has " +
+                                             std::to_string(rest.size()) + " bytes behind its header");
     };
     if (!size) throw truncated("can hold");
     if (header.data == "binary") {
         if (std::uint64_t(*size) > rest.size()) throw truncated("holds");
+        if (rest.size() - std::uint64_t(*size) >= std::uint64_t(header.rowBytes))
+            message(ctx, MessageLevel::Warning,
+                    path + ": " + std::to_string(rest.size() - std::uint64_t(*size)) + " bytes behind its " +
+                        std::to_string(header.points) + " points left out");
         return {rest, false};
     }
     std::uint32_t sizes[2];
     if (rest.size() < sizeof sizes) throw truncated("holds");
     std::memcpy(sizes, rest.data(), sizeof sizes);
-    if (sizes[1] != *size || sizes[0] > rest.size() - sizeof sizes || *size / 300 > sizes[0])
-        throw truncated("holds compressed");
+    if (sizes[1] != *size)
+        throw Error(ErrorCode::BadData, path + ": the header claims " + std::to_string(*size) +
+                                            " bytes of points, its compressed data " +
+                                            std::to_string(sizes[1]) + "; one of them is more than it holds");
+    if (sizes[0] > rest.size() - sizeof sizes || *size / 300 > sizes[0]) throw truncated("holds compressed");
     unpacked = unpackLzf(path, rest.substr(sizeof sizes, sizes[0]), std::size_t(*size));
     return {unpacked, true};
 }
@@ -164,38 +77,61 @@ struct Row {
     bool normals = false;
 };
 
-Row rowOf(const std::string& path, const Header& header) {
-    static const char* const names[6] = {"x", "y", "z", "normal_x", "normal_y", "normal_z"};
-    Row row;
-    std::vector<char> taken(header.fields.size(), 0);
-    const auto find = [&](const char* name) {
+// The field of one of these names, as written or in another case; the number of fields if there is none.
+std::size_t findField(const PcdHeader& header, std::initializer_list<const char*> names) {
+    for (const char* name : names)
         for (std::size_t f = 0; f < header.fields.size(); ++f)
-            if (!taken[f] && header.fields[f].name == name && header.fields[f].count > 0) return f;
-        return header.fields.size();
-    };
-    for (std::size_t k = 0; k < 6; ++k) {
-        const std::size_t f = find(names[k]);
-        if (f == header.fields.size() && k < 3)
-            throw Error(ErrorCode::BadData, path + ": its fields have no x, y and z");
-        if (f == header.fields.size()) break;
-        taken[f] = 1;
-        row.fields.push_back(f);
+            if (header.fields[f].name == name && header.fields[f].count > 0) return f;
+    return header.fields.size();
+}
+
+// Adds three fields to the row, if all are there.
+bool takeThree(const PcdHeader& header, Row& row,
+               std::initializer_list<std::initializer_list<const char*>> names) {
+    std::vector<std::size_t> found;
+    for (const auto& spellings : names) {
+        found.push_back(findField(header, spellings));
+        if (found.back() == header.fields.size()) return false;
     }
-    row.normals = row.fields.size() == 6;
-    row.fields.resize(row.normals ? 6 : 3);
+    row.fields.insert(row.fields.end(), found.begin(), found.end());
+    return true;
+}
+
+// The value of full colour in a field's type.
+double whiteOf(const PcdField& field) {
+    return field.type != 'U' ? 0 : field.size == 1 ? 255 : field.size == 2 ? 65535 : 0;
+}
+
+Row rowOf(const std::string& path, const PcdHeader& header, const RunContext& ctx) {
+    Row row;
+    if (!takeThree(header, row, {{"x", "X"}, {"y", "Y"}, {"z", "Z"}}))
+        throw Error(ErrorCode::BadData, path + ": its fields have no x, y and z");
+    row.normals = takeThree(header, row,
+                            {{"normal_x", "nx", "normalx", "normal_X", "NX"},
+                             {"normal_y", "ny", "normaly", "normal_Y", "NY"},
+                             {"normal_z", "nz", "normalz", "normal_Z", "NZ"}});
+    std::size_t left = 0;
     for (std::size_t f = 0; f < header.fields.size(); ++f) {
-        const Field& field = header.fields[f];
-        if (taken[f] || field.count != 1 || field.name == "_" || field.name.empty()) continue;
+        const PcdField& field = header.fields[f];
+        if (std::find(row.fields.begin(), row.fields.end(), f) != row.fields.end()) continue;
+        if (field.name == "_" || field.name.empty() || field.count == 0) continue;
         const bool packed = (field.name == "rgb" || field.name == "rgba") && field.size == 4;
-        if (packed && row.colour > 0) continue;
+        if (field.count != 1 || (packed && row.colour > 0)) {
+            ++left;
+            continue;
+        }
         if (packed) {
             row.colour = row.fields.size();
             for (const char* name : {"red", "green", "blue"}) row.columns.push_back({name, 255, {}});
         } else {
-            row.columns.push_back({field.name, 0, {}});
+            row.columns.push_back({field.name, whiteOf(field), {}});
         }
         row.fields.push_back(f);
     }
+    if (left > 0)
+        message(ctx, MessageLevel::Note,
+                path + ": " + std::to_string(left) +
+                    " fields of several values a point, or a second colour, left out");
     return row;
 }
 
@@ -229,43 +165,70 @@ void appendPoint(Row& row, const std::vector<double>& numbers, PointContent& clo
     }
 }
 
-void readAscii(const std::string& path, const std::string& content, const Header& header, Row& row,
-               PointContent& cloud) {
-    TextScanner scanner(path, content, '\0', header.bytes);
-    if (std::uint64_t(header.points) > (content.size() - header.bytes) / 2 + 1)
-        scanner.fail("the header claims more points than the file holds");
-    std::vector<int> slotOf(header.fields.size(), -1);
-    for (std::size_t slot = 0; slot < row.fields.size(); ++slot) slotOf[row.fields[slot]] = int(slot);
-    std::vector<double> numbers(row.fields.size());
-    for (std::int64_t p = 0; p < header.points; ++p) {
-        for (std::size_t f = 0; f < header.fields.size(); ++f)
-            for (std::int64_t c = 0; c < header.fields[f].count; ++c) {
-                const std::string_view word = scanner.word();
-                if (word.empty()) scanner.fail("the file is truncated");
-                if (slotOf[f] < 0 || c > 0) continue;
-                double value = 0;
-                std::int64_t whole = 0;
-                const bool isWhole = header.fields[f].type != 'F' && parseWhole(word, whole);
-                if (!isWhole && !parseAnyReal(word, value))
-                    scanner.fail("\"" + std::string(word.substr(0, 40)) + "\" is not a number");
-                const bool colour = row.colour > 0 && std::size_t(slotOf[f]) == row.colour;
-                numbers[std::size_t(slotOf[f])] = isWhole  ? double(whole)
-                                                  : colour ? bitsOf(float(value))
-                                                           : value;
-            }
-        appendPoint(row, numbers, cloud);
-    }
+// A number as text. Packed colours are whole numbers, or floats of the same bits.
+double asciiNumber(const RowText& text, std::string_view word, const PcdField& field, bool colour) {
+    double value = 0;
+    std::int64_t whole = 0;
+    const bool digits = word.find_first_not_of("0123456789") == std::string_view::npos;
+    if ((field.type != 'F' || (colour && digits)) && parseWhole(word, whole)) return double(whole);
+    if (!parseLenient(word, false, value)) text.fail(shownWord(word) + " is not a number");
+    return colour ? bitsOf(float(value)) : value;
 }
 
-void readBinary(const Header& header, const Layout& layout, Row& row, PointContent& cloud) {
+void readAscii(const std::string& path, const std::string& content, const PcdHeader& header, Row& row,
+               PointContent& cloud, const RunContext& ctx) {
+    RowText text(path, content, header.bytes);
+    if (std::uint64_t(header.points) > (content.size() - header.bytes) / 2 + 1)
+        throw Error(ErrorCode::BadData, path + ": the header claims " + std::to_string(header.points) +
+                                            " points, more than the file holds");
+    std::vector<std::size_t> wordOf;  // of a row, for each slot
+    std::size_t words = 0;
+    for (const std::size_t field : row.fields) {
+        wordOf.push_back(0);
+        for (std::size_t f = 0; f < field; ++f) wordOf.back() += std::size_t(header.fields[f].count);
+    }
+    for (const PcdField& field : header.fields) words += std::size_t(field.count);
+    std::vector<double> numbers(row.fields.size());
+    std::vector<std::string_view> line;
+    std::int64_t points = 0, more = 0, longRows = 0;
+    while (text.next()) {
+        if (points == header.points && ++more) continue;
+        line.clear();
+        text.words(line);
+        if (line.size() < words)
+            text.fail("a row of " + std::to_string(line.size()) + " numbers for " + std::to_string(words) +
+                      (text.isCutOff() ? " fields; the file is truncated" : " fields"));
+        longRows += line.size() > words;
+        for (std::size_t slot = 0; slot < numbers.size(); ++slot)
+            numbers[slot] = asciiNumber(text, line[wordOf[slot]], header.fields[row.fields[slot]],
+                                        row.colour > 0 && slot == row.colour);
+        appendPoint(row, numbers, cloud);
+        ++points;
+    }
+    if (points < header.points)
+        throw Error(ErrorCode::BadData, path + ": the header claims " + std::to_string(header.points) +
+                                            " points, more than the file holds: " + std::to_string(points) +
+                                            "; the file is truncated");
+    if (more > 0)
+        message(ctx, MessageLevel::Warning,
+                path + ": " + std::to_string(more) + " rows behind its " + std::to_string(points) +
+                    " points left out");
+    if (longRows > 0)
+        message(ctx, MessageLevel::Warning,
+                path + ": " + std::to_string(longRows) +
+                    " rows have more numbers than fields; those are "
+                    "left out");
+}
+
+void readBinary(const PcdHeader& header, const Layout& layout, Row& row, PointContent& cloud) {
     std::vector<double> numbers(row.fields.size());
     for (std::int64_t p = 0; p < header.points; ++p) {
         for (std::size_t slot = 0; slot < row.fields.size(); ++slot) {
-            const Field& field = header.fields[row.fields[slot]];
+            const PcdField& field = header.fields[row.fields[slot]];
             const std::int64_t at = layout.byField
                                         ? field.offset * header.points + p * field.size * field.count
                                         : p * header.rowBytes + field.offset;
-            Field plain = field;
+            PcdField plain = field;
             // A float that encodes a colour must stay bits: as a number it may be a signalling NaN.
             if (row.colour > 0 && slot == row.colour) plain.type = 'U';
             numbers[slot] = numberAt(layout.bytes.data() + at, plain);
@@ -276,18 +239,18 @@ void readBinary(const Header& header, const Layout& layout, Row& row, PointConte
 
 }  // namespace
 
-PointContent readPcd(const std::string& path, const std::string& content, const RunContext&) {
-    const Header header = readHeader(path, content);
-    Row row = rowOf(path, header);
+PointContent readPcd(const std::string& path, const std::string& content, const RunContext& ctx) {
+    const PcdHeader header = readPcdHeader(path, content, ctx);
+    Row row = rowOf(path, header, ctx);
     PointContent cloud;
     if (header.data == "ascii") {
-        readAscii(path, content, header, row, cloud);
+        readAscii(path, content, header, row, cloud, ctx);
     } else if (header.data == "binary" || header.data == "binary_compressed") {
         std::string unpacked;
-        readBinary(header, binaryLayout(path, content, header, unpacked), row, cloud);
+        readBinary(header, binaryLayout(path, content, header, unpacked, ctx), row, cloud);
     } else {
-        throw Error(ErrorCode::BadData, path + ": DATA \"" + header.data.substr(0, 40) +
-                                            "\" is unknown; ascii, binary and binary_compressed are read");
+        throw Error(ErrorCode::BadData, path + ": DATA " + shownWord(header.data) +
+                                            " is unknown; ascii, binary and binary_compressed are read");
     }
     cloud.attributes = groupColumns(std::move(row.columns));
     return cloud;

@@ -59,4 +59,14 @@ double whiteOf(SampleType type);
 // Converts `count` samples from raw bytes to floats. @param swap  bytes are in the other order
 void toFloats(const char* bytes, std::size_t count, SampleType type, bool swap, float* out);
 
+// The header of a NumPy array, of pictures, volumes and points.
+struct NpyHeader {
+    SampleType type = SampleType::U8;
+    bool swap = false, columnsFirst = false, truths = false;  // truths: of True and False
+    std::vector<std::int64_t> shape;                          // slowest first, unless columnsFirst
+    std::size_t bytes = 0;                                    // before the numbers
+};
+// @throw Error BadData (truncated, records, a type other than real numbers)
+NpyHeader readNpyHeader(const std::string& path, const std::string& content);
+
 }  // namespace vdbsynth

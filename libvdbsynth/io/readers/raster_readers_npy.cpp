@@ -10,12 +10,6 @@
 namespace vdbsynth {
 namespace {
 
-struct Header {
-    SampleType type = SampleType::U8;
-    bool swap = false, columnsFirst = false, truths = false;
-    std::vector<std::int64_t> shape;
-};
-
 // The text after a key of the header's dictionary.
 std::string valueOf(const std::string& path, const std::string& text, const std::string& key) {
     const std::size_t at = text.find("'" + key + "'");
@@ -37,13 +31,16 @@ SampleType typeOf(const std::string& path, const std::string& code) {
     return found->second;
 }
 
-Header parseHeader(const std::string& path, const std::string& text) {
-    Header header;
+NpyHeader parseHeader(const std::string& path, const std::string& text) {
+    NpyHeader header;
     const std::string descr = valueOf(path, text, "descr");
     if (descr.size() < 5 || (descr[0] != '\'' && descr[0] != '"'))
         throw Error(
             ErrorCode::BadData,
-            path + ": holds records (a structured type); save one of their fields as an array of its own");
+            path +
+                ": holds records (a structured type); save one of their fields as an array of its own, or "
+                "points with fields x, y, z as one array of three columns, for example with "
+                "numpy.lib.recfunctions.structured_to_unstructured");
     const std::size_t end = descr.find(descr[0], 1);
     const std::string code = descr.substr(1, end == std::string::npos ? 0 : end - 1);
     header.swap = !code.empty() && code[0] == '>';
@@ -77,7 +74,7 @@ struct Index {
     std::int64_t side, stride;
 };
 
-std::vector<Index> indicesOf(const Header& header) {
+std::vector<Index> indicesOf(const NpyHeader& header) {
     std::vector<Index> indices;
     for (const std::int64_t side : header.shape) indices.push_back({side, 1});
     const std::size_t count = indices.size();
@@ -91,7 +88,7 @@ std::vector<Index> indicesOf(const Header& header) {
 
 // Frameworks add indices of length one; of four that are left, the first or a short last one counts
 // channels.
-Layout layoutOf(const std::string& path, const Header& header, const RunContext& ctx) {
+Layout layoutOf(const std::string& path, const NpyHeader& header, const RunContext& ctx) {
     std::vector<Index> indices = indicesOf(header);
     const std::size_t dimensions = indices.size();
     for (std::size_t i = 0; i < indices.size() && indices.size() > 3;)
@@ -133,7 +130,7 @@ Layout layoutOf(const std::string& path, const Header& header, const RunContext&
     return layout;
 }
 
-void readSamples(const char* bytes, const Header& header, const Layout& layout, std::size_t part,
+void readSamples(const char* bytes, const NpyHeader& header, const Layout& layout, std::size_t part,
                  Raster& raster) {
     const std::size_t size = bytesOf(header.type), channels = std::size_t(raster.channels);
     const bool rows = channels == 1 && layout.strides[2] == 1;
@@ -154,14 +151,14 @@ void readSamples(const char* bytes, const Header& header, const Layout& layout, 
         }
 }
 
-std::string shapeText(const Header& header) {
+std::string shapeText(const NpyHeader& header) {
     std::string text;
     for (const std::int64_t side : header.shape) text += (text.empty() ? "" : " x ") + std::to_string(side);
     return text;
 }
 
 // The file holds as many numbers as its header claims.
-void requireWhole(const std::string& path, const Header& header, std::size_t bytes) {
+void requireWhole(const std::string& path, const NpyHeader& header, std::size_t bytes) {
     constexpr std::size_t kMostDimensions = 64;  // NumPy's
     if (header.shape.size() > kMostDimensions)
         throw Error(ErrorCode::BadData, path + ": its header claims over 64 dimensions");
@@ -180,8 +177,7 @@ void requireWhole(const std::string& path, const Header& header, std::size_t byt
 
 }  // namespace
 
-Raster readNpy(const std::string& path, const std::string& content, const RasterReadOptions& options,
-               const RunContext& ctx) {
+NpyHeader readNpyHeader(const std::string& path, const std::string& content) {
     if (content.compare(0, 6, "\x93NUMPY") != 0 || content.size() < 12)
         throw Error(ErrorCode::BadData, path + ": not an npy file");
     const bool longHeader = content[6] > 1;
@@ -189,7 +185,15 @@ Raster readNpy(const std::string& path, const std::string& content, const Raster
     std::memcpy(&length, content.data() + 8, longHeader ? 4 : 2);
     const std::size_t start = (longHeader ? 12 : 10) + std::size_t(length);
     if (start > content.size()) throw Error(ErrorCode::BadData, path + ": truncated in its header");
-    const Header header = parseHeader(path, content.substr(longHeader ? 12 : 10, length));
+    NpyHeader header = parseHeader(path, content.substr(longHeader ? 12 : 10, length));
+    header.bytes = start;
+    return header;
+}
+
+Raster readNpy(const std::string& path, const std::string& content, const RasterReadOptions& options,
+               const RunContext& ctx) {
+    const NpyHeader header = readNpyHeader(path, content);
+    const std::size_t start = header.bytes;
     requireWhole(path, header, content.size() - start);
     const Layout layout = layoutOf(path, header, ctx);
     constexpr std::int64_t kMostParts = 100000;

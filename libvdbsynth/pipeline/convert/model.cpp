@@ -81,6 +81,14 @@ LevelSet loadMesh(const std::string& path, const ModelOptions& options, const Ru
     return model;
 }
 
+// From places relative to an origin to the world's, without resampling.
+void moveTo(const Vec3d& origin, LevelSet& model) {
+    if (origin.x == 0 && origin.y == 0 && origin.z == 0) return;
+    model.grid->transform().postTranslate({origin.x, origin.y, origin.z});
+    for (const GridPtr& grid : model.attributes)
+        grid->transform().postTranslate({origin.x, origin.y, origin.z});
+}
+
 LevelSet loadPoints(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
     PointFile file = readPoints(path, ctx);
     if (file.invalid > 0)
@@ -93,6 +101,7 @@ LevelSet loadPoints(const std::string& path, const ModelOptions& options, const 
     LevelSet model =
         asModel(pointsToSolid(file.cloud, voxelSize, options.halfWidth, path, options.solid, ctx), path);
     if (options.carry) model.attributes = attributesToGrids(core, *model.grid, ctx);
+    moveTo(file.cloud.origin, model);
     return model;
 }
 
@@ -165,17 +174,24 @@ void requireModelPath(const std::string& path) {
         if (readExtensionOf(path) == part)
             throw Error(ErrorCode::InvalidOption,
                         path + ": is one of a pair of files (Analyze 7.5 or NIfTI); convert it to one .nii");
+    for (const char* scan : {"las", "laz", "e57", "ptx", "copc"})
+        if (readExtensionOf(path) == scan)
+            throw Error(ErrorCode::InvalidOption,
+                        path + ": ." + scan +
+                            " files are not read; save the points as .ply, .pcd or .xyz, for example with "
+                            "CloudCompare or PDAL");
     throw Error(ErrorCode::InvalidOption,
                 path +
                     ": unknown extension; models are .vdb, meshes .obj, .ply, .stl, .off, .gltf, .glb, "
-                    ".mesh, points .ply, .xyz, .pwn, .pcd, " +
-                    kRasterExtensions + ", each also with .gz");
+                    ".mesh, points .ply, " +
+                    kPointExtensions + ", " + kRasterExtensions + ", each also with .gz");
 }
 
 namespace {
 
 LevelSet loaded(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
-    if (isPointPath(path) || holdsPoints(path)) return loadPoints(path, options, ctx);
+    const bool asRaster = options.imageAsVolume && isRasterPath(path);
+    if (isPointPath(path) || (!asRaster && holdsPoints(path))) return loadPoints(path, options, ctx);
     if (isMeshPath(path)) return loadMesh(path, options, ctx);
     if (isRasterPath(path)) return loadRaster(path, options, ctx);
     VdbReadOptions read;

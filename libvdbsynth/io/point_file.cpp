@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <fstream>
 
 namespace vdbsynth {
@@ -44,6 +46,18 @@ std::size_t clean(PointContent& cloud) {
     return dropped;
 }
 
+bool isGltf(const std::string& extension) {
+    return extension == "gltf" || extension == "glb";
+}
+
+// True if the beginning of a .glb file reaches to the end of its first chunk, which is its JSON.
+bool holdsGltfJson(const std::string& start) {
+    std::uint32_t length = 0;
+    if (start.size() < 20 || start.compare(0, 4, "glTF") != 0) return false;
+    std::memcpy(&length, &start[12], sizeof length);
+    return length <= start.size() - 20;
+}
+
 }  // namespace
 
 bool isPointPath(const std::string& path) {
@@ -52,27 +66,32 @@ bool isPointPath(const std::string& path) {
 }
 
 bool holdsPoints(const std::string& path) {
-    if (readExtensionOf(path) != "ply") return false;
+    const std::string extension = readExtensionOf(path);
+    const bool gltf = isGltf(extension);
+    if (extension != "ply" && !gltf) return false;
     // A header is short, so most of a large file need not be read twice.
     std::string start(1 << 16, '\0');
     std::ifstream file(path, std::ios::binary);
     file.read(start.data(), std::streamsize(start.size()));
     start.resize(std::size_t(std::max<std::streamsize>(file.gcount(), 0)));
-    const bool whole = isGzip(start) || start.find("end_header") == std::string::npos;
-    return plyFaceCount(path, whole ? readWholeFile(path) : start) == 0;
+    const bool part =
+        !isGzip(start) && (gltf ? holdsGltfJson(start) : start.find("end_header") != std::string::npos);
+    const std::string content = part ? start : readWholeFile(path);
+    return gltf ? gltfHoldsPoints(path, content) : plyFaceCount(path, content) == 0;
 }
 
 PointFile readPoints(const std::string& path, const RunContext& ctx) {
     const std::string extension = readExtensionOf(path);
-    if (!isPointPath(path) && extension != "ply")
+    if (!isPointPath(path) && extension != "ply" && !isGltf(extension))
         throw Error(ErrorCode::InvalidOption,
-                    path + ": unknown extension; points are .ply, .xyz, .pwn or .pcd");
+                    path + ": unknown extension; points are .ply, .xyz, .pwn, .pcd, .gltf or .glb");
     Stage stage(ctx, "reading " + path, 2, /* reading= */ true);
     const std::string content = readWholeFile(path);
     stage.advance();
     if (content.empty()) throw Error(ErrorCode::BadData, path + ": the file is empty");
     PointFile file;
     PointContent points = extension == "ply"   ? readPlyPoints(path, content, ctx)
+                          : isGltf(extension)  ? readGltfPoints(path, content, ctx)
                           : extension == "pcd" ? readPcd(path, content, ctx)
                                                : readRows(path, content, ctx);
     file.invalid = clean(points);

@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
         const std::filesystem::path kind =
             std::filesystem::path(argv[1]) / std::filesystem::path(name).extension().string().substr(1);
         std::filesystem::create_directories(kind);
-        std::ofstream(kind / "seed", std::ios::binary) << content;
+        std::ofstream(kind / name, std::ios::binary) << content;
     }
     return 0;
 }

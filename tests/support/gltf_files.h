@@ -11,7 +11,7 @@
 // Small glTF files, member by member, for tests.
 namespace vdbsynth::test {
 
-/// A .glb of these chunks. @param length  of the JSON chunk as its header claims; 0 for the right one
+/// A .glb of these chunks; no second one if it is empty.
 inline std::string glb(const std::string& json, const std::string& binary, std::uint32_t version = 2) {
     const std::string padded = json + std::string((4 - json.size() % 4) % 4, ' ');
     std::string bytes = "glTF";
@@ -71,5 +71,46 @@ public:
     nlohmann::json json;
     std::string binary;
 };
+
+/// Every kind of thing that moves a vertex: instances, a skin below a scaled node, a sparse morph target.
+inline GltfMaker posedGltf() {
+    GltfMaker maker;
+    const int joints = maker.add<std::uint8_t>(std::vector<std::uint8_t>(32, 0), "VEC4", 5121),
+              weights = maker.add<std::uint8_t>(std::vector<std::uint8_t>(32, 255), "VEC4", 5121, true),
+              bind = maker.add<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, "MAT4", 5126),
+              rows = maker.add<std::uint16_t>({7}, "SCALAR", 5123),
+              step = maker.add<float>({1, 1, 1}, "VEC3", 5126),
+              places = maker.add<float>({0, 0, 0, 4, 0, 0}, "VEC3", 5126),
+              turns = maker.add<std::int16_t>({0, 0, 0, 32767, 0, 0, 0, 32767}, "VEC4", 5122, true);
+    nlohmann::json& accessors = maker.json["accessors"];
+    accessors.push_back(
+        {{"componentType", 5126},
+         {"count", 8},
+         {"type", "VEC3"},
+         {"sparse",
+          {{"count", 1},
+           {"indices", {{"bufferView", accessors[std::size_t(rows)]["bufferView"]}, {"componentType", 5123}}},
+           {"values", {{"bufferView", accessors[std::size_t(step)]["bufferView"]}}}}}});
+    maker.primitive()["targets"] = {{{"POSITION", accessors.size() - 1}}};
+    maker.json["meshes"][0]["weights"] = {0.5};
+    maker.json["meshes"].push_back(maker.json["meshes"][0]);
+    maker.primitive()["attributes"]["JOINTS_0"] = joints;
+    maker.primitive()["attributes"]["WEIGHTS_0"] = weights;
+    maker.json["skins"] = {{{"joints", {2}}, {"inverseBindMatrices", bind}}};
+    maker.json["nodes"][0]["skin"] = 0;
+    maker.json["nodes"].push_back({{"scale", {2, 2, 2}}, {"children", {2}}});
+    maker.json["nodes"].push_back({{"translation", {0, 0, 1}}});
+    nlohmann::json copies;
+    copies["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", places}, {"ROTATION", turns}};
+    maker.json["nodes"].push_back({{"mesh", 1}, {"extensions", copies}});
+    maker.json["scenes"][0]["nodes"] = {0, 1, 3};
+    return maker;
+}
+
+inline GltfMaker pointsGltf() {
+    GltfMaker maker;
+    maker.primitive() = {{"mode", 0}, {"attributes", {{"POSITION", 0}, {"NORMAL", 0}}}};
+    return maker;
+}
 
 }  // namespace vdbsynth::test

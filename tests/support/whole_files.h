@@ -1,6 +1,7 @@
 #pragma once
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/raster_file.h"
+#include "tests/support/gltf_files.h"
 #include "tests/support/makers.h"
 #include "tests/support/raster_files.h"
 #include "tests/support/temporary_folder.h"
@@ -23,6 +24,8 @@ inline std::map<std::string, std::string> wholeFiles(const TemporaryFolder& fold
         writeMesh(folder.path(name), format, mesh);
         files[name] = contentOf(folder.path(name));
     }
+    files["b.glb"] = posedGltf().bytes();
+    files["c.glb"] = pointsGltf().bytes();
     files["a.mesh"] =
         "MeshVersionFormatted 1\nDimension 3\nVertices 3\n0 0 0 0\n1 0 0 0\n0 1 0 0\nTriangles 1\n1 2 3 "
         "0\nEnd\n";

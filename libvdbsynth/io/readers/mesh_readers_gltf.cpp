@@ -66,6 +66,10 @@ public:
         if (unweighted > 0)
             mFile.say(MessageLevel::Note, std::to_string(unweighted) +
                                               " vertices without weights follow the first joint they name");
+        if (mJointless > 0)
+            mFile.say(MessageLevel::Note,
+                      std::to_string(mJointless) +
+                          " primitives with a skin and no joints read where their node is");
         if (mTrailing > 0)
             mFile.say(MessageLevel::Note, std::to_string(mTrailing) +
                                               " corners at the end of primitives make no triangle, left out");
@@ -96,26 +100,33 @@ private:
         std::vector<Affine> places = gltfInstances(mFile, node);
         for (Affine& place : places) place = multiplied(part.matrix, place);
         const std::int64_t skin = mFile.index(node, "skin");
-        if (skin >= 0) {
-            if (gltfExtension(node, "EXT_mesh_gpu_instancing"))
-                mFile.say(MessageLevel::Note, "instances of a mesh with a skin left out; it is read once");
-            // Joints alone say where it is.
-            places = {kIdentity};
-        }
+        if (skin >= 0 && gltfExtension(node, "EXT_mesh_gpu_instancing"))
+            mFile.say(MessageLevel::Note, "instances of a mesh with a skin left out; it is read once");
         for (const GltfJson& primitive : gltfPrimitives(mFile, part.mesh)) {
-            if ((gltfMode(mFile, primitive) == kGltfPoints) != mPointsOnly) continue;
-            if (!mPointsOnly && gltfMode(mFile, primitive) <= kGltfLineStrip) continue;
+            const std::uint64_t mode = gltfMode(mFile, primitive);
+            const bool wanted = mPointsOnly ? mode == kGltfPoints : mode > kGltfLineStrip;
             Primitive read;
-            if (!decode(primitive, weights, read)) continue;
-            if (skin >= 0) {
-                GltfSkin& joints = mSkins.try_emplace(skin, mFile, mScene, skin).first->second;
-                read.mirrored = joints.move(primitive, read.places);
-                read.normals = {};
-            }
-            if (mPointsOnly) keepListed(read);
-            requireRoom(read, places.size());
-            for (const Affine& place : places) append(read, place);
+            if (!wanted || !decode(primitive, weights, read)) continue;
+            // Joints alone say where it is.
+            const bool posed = skin >= 0 && pose(primitive, skin, read);
+            requireRoom(read, posed ? 1 : places.size());
+            if (posed)
+                append(read, kIdentity);
+            else
+                for (const Affine& place : places) append(read, place);
         }
+    }
+
+    // @return false if it has no joints
+    bool pose(const GltfJson& primitive, std::int64_t skin, Primitive& read) {
+        GltfSkin& joints = mSkins.try_emplace(skin, mFile, mScene, skin).first->second;
+        if (!joints.moves(primitive)) {
+            ++mJointless;
+            return false;
+        }
+        read.mirrored = joints.move(primitive, read.places);
+        read.normals = {};
+        return true;
     }
 
     // @return false if it has no positions
@@ -205,7 +216,7 @@ private:
     PolygonList mPolygons;
     GltfAttributes mAttributes;
     std::map<std::int64_t, GltfSkin> mSkins;
-    std::size_t mPlaceless = 0, mTrailing = 0;
+    std::size_t mPlaceless = 0, mJointless = 0, mTrailing = 0;
 };
 
 }  // namespace
@@ -217,7 +228,7 @@ MeshContent readGltf(const std::string& path, const std::string& content, const 
     if (kinds.triangles == 0 && kinds.points > 0) file.refuse("holds points and no triangles; it is no mesh");
     if (kinds.triangles == 0 && kinds.lines > 0)
         file.refuse("holds only lines (" + std::to_string(kinds.lines) +
-                    " primitives), which have no volume; export it with faces, for example lines as tubes");
+                    " in number), which have no volume; export it with faces, for example lines as tubes");
     sayGltfKinds(file, kinds, /* points= */ false);
     Reader reader(file, scene, /* points= */ false);
     reader.read();

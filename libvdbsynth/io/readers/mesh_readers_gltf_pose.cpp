@@ -69,6 +69,12 @@ Affine GltfSkin::blended(const std::vector<GltfValues>& joints, const std::vecto
     return sum;
 }
 
+bool GltfSkin::moves(const GltfJson& primitive) const {
+    const GltfJson* attributes = gltfMember(primitive, "attributes");
+    return attributes && mFile.index(*attributes, "JOINTS_0") >= 0 &&
+           mFile.index(*attributes, "WEIGHTS_0") >= 0;
+}
+
 bool GltfSkin::move(const GltfJson& primitive, GltfValues& places) {
     const GltfJson* attributes = gltfMember(primitive, "attributes");
     std::vector<GltfValues> joints, weights;
@@ -84,7 +90,6 @@ bool GltfSkin::move(const GltfJson& primitive, GltfValues& places) {
             if (values->width != 4 || values->count != places.count)
                 mFile.refuse("joints or weights are not vectors of four, one for each vertex");
     }
-    if (joints.empty()) mFile.refuse("a mesh with a skin has no JOINTS_0 and WEIGHTS_0");
     std::size_t mirrored = 0;
     for (std::size_t i = 0; i < places.count; ++i) {
         const Affine matrix = blended(joints, weights, i);

@@ -142,7 +142,9 @@ void moveByTargets(const GltfFile& file, const GltfJson& primitive, const std::v
 class GltfSkin {
 public:
     GltfSkin(const GltfFile& file, const GltfScene& scene, std::int64_t skin);
-    /// Moves vertices into the world. @return true if most are mirrored
+    /// True if a primitive names joints.
+    bool moves(const GltfJson& primitive) const;
+    /// Moves vertices of such a primitive into the world. @return true if most are mirrored
     bool move(const GltfJson& primitive, GltfValues& places);
     std::size_t unweighted() const { return mUnweighted; }
 

@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 
@@ -71,6 +73,18 @@ void sayCleaned(const std::string& path, const Cleaned& cleaned, std::size_t poi
                     " of its points have none (zero or not finite)");
 }
 
+bool isGltf(const std::string& extension) {
+    return extension == "gltf" || extension == "glb";
+}
+
+// True if the beginning of a .glb file reaches to the end of its first chunk, which is its JSON.
+bool holdsGltfJson(const std::string& start) {
+    std::uint32_t length = 0;
+    if (start.size() < 20 || start.compare(0, 4, "glTF") != 0) return false;
+    std::memcpy(&length, &start[12], sizeof length);
+    return length <= start.size() - 20;
+}
+
 bool isRowsExtension(const std::string& extension) {
     static const char* const known[] = {"xyz", "pwn", "pts", "txt", "asc", "csv", "xyzn", "xyzrgb"};
     return std::find(std::begin(known), std::end(known), extension) != std::end(known);
@@ -96,18 +110,21 @@ bool isPointPath(const std::string& path) {
 
 bool holdsPoints(const std::string& path) {
     const std::string extension = readExtensionOf(path);
-    if (extension != "ply" && extension != "npy") return false;
+    const bool gltf = isGltf(extension);
+    if (extension != "ply" && extension != "npy" && !gltf) return false;
     const std::string start = startOf(path);
     if (extension == "npy") return npyHoldsPoints(path, isGzip(start) ? readWholeFile(path) : start);
-    const bool whole = isGzip(start) || start.find("end_header") == std::string::npos;
-    return plyFaceCount(path, whole ? readWholeFile(path) : start) == 0;
+    const bool part =
+        !isGzip(start) && (gltf ? holdsGltfJson(start) : start.find("end_header") != std::string::npos);
+    const std::string content = part ? start : readWholeFile(path);
+    return gltf ? gltfHoldsPoints(path, content) : plyFaceCount(path, content) == 0;
 }
 
 PointFile readPoints(const std::string& path, const RunContext& ctx) {
     const std::string extension = readExtensionOf(path);
-    if (!isPointPath(path) && extension != "ply" && extension != "npy")
+    if (!isPointPath(path) && extension != "ply" && extension != "npy" && !isGltf(extension))
         throw Error(ErrorCode::InvalidOption,
-                    path + ": unknown extension; points are .ply, .npy, " + kPointExtensions);
+                    path + ": unknown extension; points are .ply, .npy, .gltf, .glb, " + kPointExtensions);
     Stage stage(ctx, "reading " + path, 2, /* reading= */ true);
     const std::string content = readWholeFile(path);
     stage.advance();
@@ -115,6 +132,7 @@ PointFile readPoints(const std::string& path, const RunContext& ctx) {
     PointFile file;
     PointContent points = extension == "ply"   ? readPlyPoints(path, content, ctx)
                           : extension == "npy" ? readNpyPoints(path, content, ctx)
+                          : isGltf(extension)  ? readGltfPoints(path, content, ctx)
                           : extension == "pcd" ? readPcd(path, content, ctx)
                                                : readRows(path, content, ctx);
     const std::size_t count = points.points.size();

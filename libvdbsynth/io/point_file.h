@@ -7,14 +7,15 @@
 namespace vdbsynth {
 
 /// True if the path ends in .pcd, or an extension of rows of numbers: .xyz, .xyzn, .xyzrgb, .pts, .pwn, .txt,
-/// .asc, .csv; in any case, with or without .gz. A .ply and an .npy may also hold points; see holdsPoints.
+/// .asc, .csv; in any case, with or without .gz. A .ply, .npy, .gltf or .glb may also hold
+/// points; see holdsPoints.
 bool isPointPath(const std::string& path);
 /// The extensions of isPointPath in words, for messages.
 extern const char* const kPointExtensions;
 
 /// True for a .ply file without any face element, or with an empty one, and for an .npy array of N x 3 (or
 /// 3 x N) numbers: 3 to 9 real ones, or 3 whole ones of two bytes or more, of at least ten times as many
-/// points.
+/// points; and for a .gltf or .glb file whose scene has points and no triangles.
 /// @throw Error as readPoints
 bool holdsPoints(const std::string& path);
 
@@ -32,6 +33,7 @@ struct PointFile {
 ///   all points, then all normals (.pwn) is read too. The last row of a file that was cut off is left out;
 /// - .pcd 0.5 to 0.7: ascii, binary and binary_compressed, fields of any type and order;
 /// - .ply: as readMesh, vertices with nx ny nz;
+/// - .gltf, .glb: as readMesh, primitives of points;
 /// - .npy: as rows without names; see holdsPoints.
 /// Whatever is guessed, or left out, is a message. Strict otherwise, except for non-finite coordinates, with
 /// which scanners mark pixels without a point. Coordinates are read as doubles.

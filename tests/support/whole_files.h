@@ -1,6 +1,7 @@
 #pragma once
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/raster_file.h"
+#include "tests/support/gltf_files.h"
 #include "tests/support/makers.h"
 #include "tests/support/raster_files.h"
 #include "tests/support/stl_files.h"
@@ -53,6 +54,8 @@ inline std::map<std::string, std::string> wholeFiles(const TemporaryFolder& fold
         "MeshVersionFormatted 2\nDimension 3\nVertices 4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\nTetrahedra "
         "1\n1 2 3 4 "
         "0\nEnd\n";
+    files["b.glb"] = posedGltf().bytes();
+    files["c.glb"] = pointsGltf().bytes();
     files["a.mesh"] =
         "MeshVersionFormatted 1\nDimension 3\nVertices 3\n0 0 0 0\n1 0 0 0\n0 1 0 0\nTriangles 1\n1 2 3 "
         "0\nEnd\n";

@@ -20,7 +20,7 @@ for room, direct in [
 # Which rooms may see which third party.
 ALLOWED = {
     "openvdb/": {"vdb", "render", "pipeline"}, "tbb/": {"base"}, "xxhash.h": {"base"}, "png.h": {"io"},
-    "tiny_obj_loader.h": {"io"}, "tiffio.h": {"io"}, "jpeglib.h": {"io"}, "Imf": {"io"}, "pugixml.hpp": {"io"}, "tiny_gltf.h": {"io"}, "zlib.h": {"io"}, "nanoflann.hpp": {"geometry"}, "flann/": {"search"}, "Eigen/": {"math", "geometry"}, "boost/graph/": {"math"}, "boost/program_options": {"tools"}, "nlohmann/": {"tools"},
+    "tiny_obj_loader.h": {"io"}, "tiffio.h": {"io"}, "jpeglib.h": {"io"}, "Imf": {"io"}, "pugixml.hpp": {"io"}, "tiny_gltf.h": {"io"}, "zlib.h": {"io"}, "nanoflann.hpp": {"geometry"}, "flann/": {"search"}, "Eigen/": {"math", "geometry"}, "boost/graph/": {"math"}, "boost/program_options": {"tools"}, "nlohmann/": {"io", "tools"},
 }
 ONE_FILE = {"png.h", "zlib.h", "nanoflann.hpp", "flann/", "tiny_obj_loader.h", "tiffio.h", "jpeglib.h", "Imf", "pugixml.hpp", "tiny_gltf.h", "xxhash.h", "boost/graph/", "boost/program_options"}
 

@@ -75,7 +75,7 @@ std::vector<float> numbersOf(const std::string& path) {
         const Raster raster = readRaster(path);
         numbers = raster.values;
         numbers.push_back(float(raster.spacing.x));
-    } else if (isPointPath(path)) {
+    } else if (isPointPath(path) || holdsPoints(path)) {
         add(readPoints(path).cloud.points);
     } else {
         const Mesh mesh = readMesh(path);

@@ -101,8 +101,8 @@ float gslibValue(TextScanner& scanner) {
 }
 
 std::vector<std::string> gslibNames(TextScanner& scanner, const std::string& content) {
-    const std::int64_t variables = scanner.whole();
-    if (variables < 1 || variables > 1000)
+    std::int64_t variables = 0;
+    if (!parseWhole(scanner.word(), variables) || variables < 1 || variables > 1000)
         scanner.fail("the second line must be the number of variables, 1 to 1000");
     scanner.skipLine();
     std::vector<std::string> names;

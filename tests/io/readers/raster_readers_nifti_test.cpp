@@ -94,7 +94,7 @@ TEST_CASE("readNifti: a qform is used where there is no sform, a singular sform 
     Read read = reading(file);
     REQUIRE(read.thrown.code == -1);
     CHECK(runAlongWorld(read.raster.axes));
-    CHECK(read.raster.spacing.x == 2);
+    CHECK(read.raster.spacing.x == Approx(2));
     CHECK(read.raster.origin.x == Approx(8));
     CHECK(read.raster.origin.y == Approx(19));
     CHECK(read.raster.origin.z == Approx(29));

@@ -4,7 +4,7 @@
 #include "libvdbsynth/geometry/local_points.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/readers/gzip.h"
-#include "libvdbsynth/io/readers/point_readers.h"
+#include "libvdbsynth/io/points/point_readers.h"
 #include "libvdbsynth/io/readers/whole_file.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 #pragma once
-#include "libvdbsynth/io/readers/point_readers.h"
+#include "libvdbsynth/io/points/point_readers.h"
 
 #include <string>
 

@@ -60,6 +60,11 @@ std::vector<Option> inputTable() {
             .in(Group::Input)
             .says("a fog volume is solid above this value")
             .takenBy(with(kModel, {"info"})),
+        real("unit-scale", "S", 1e-12, 1e12)
+            .in(Group::Input)
+            .says("multiplies the file's coordinates: 1000 reads metres as millimetres")
+            .initially("1")
+            .takenBy(kModel),
         choice("open", "KIND", {{"close", ""}, {"shell", "of --thickness around its faces or points"}})
             .in(Group::Input)
             .says("how to treat input that is not watertight")

@@ -165,6 +165,7 @@ ModelOptions Run::modelOptions() const {
                     "--open shell and --thickness W: give both, the thickness of the shell in world units");
     readRasterOptions(arguments, options);
     options.grid = arguments.text("grid");
+    if (arguments.has("unit-scale")) options.unitScale = arguments.real("unit-scale");
     if (arguments.has("iso")) options.iso = arguments.real("iso");
     return options;
 }

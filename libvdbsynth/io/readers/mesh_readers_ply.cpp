@@ -4,7 +4,7 @@
 #include "libvdbsynth/base/printable_text.h"
 #include "libvdbsynth/io/readers/mesh_readers.h"
 #include "libvdbsynth/io/readers/ply_file.h"
-#include "libvdbsynth/io/readers/point_readers.h"
+#include "libvdbsynth/io/points/point_readers.h"
 
 #include <algorithm>
 #include <cmath>

@@ -11,12 +11,14 @@
 #include "libvdbsynth/io/point_file.h"
 #include "libvdbsynth/io/raster_file.h"
 #include "libvdbsynth/pipeline/convert/field_model_steps.h"
+#include "libvdbsynth/pipeline/convert/model_steps.h"
 #include "libvdbsynth/vdb/convert/attribute_grids.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
 #include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/ChangeBackground.h>
 
 #include <algorithm>
 #include <cmath>
@@ -72,8 +74,15 @@ std::vector<Vec3f> usedPoints(const Mesh& mesh) {
     return points;
 }
 
+void scalePoints(std::vector<Vec3f>& points, Vec3d& origin, double scale) {
+    if (scale == 1) return;
+    origin = origin * scale;
+    for (Vec3f& p : points) p = cast<float>(cast<double>(p) * scale);
+}
+
 LevelSet loadMesh(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
-    const Mesh mesh = readMesh(path, ctx);
+    Mesh mesh = readMesh(path, ctx);
+    scalePoints(mesh.points, mesh.origin, options.unitScale);
     const double voxelSize = chooseVoxelSize(path, usedPoints(mesh), options, ctx);
     LevelSet model = asModel(meshToSolid(mesh, voxelSize, options.halfWidth, path, options.solid, ctx), path);
     if (options.keepSource) model.source = std::make_shared<const Mesh>(mesh);
@@ -94,6 +103,7 @@ LevelSet loadPoints(const std::string& path, const ModelOptions& options, const 
     if (file.invalid > 0)
         message(ctx, MessageLevel::Note,
                 path + ": " + std::to_string(file.invalid) + " points without finite coordinates left out");
+    scalePoints(file.cloud.points, file.cloud.origin, options.unitScale);
     // Outliers would make the voxels too large.
     PointCloud core = file.cloud;
     dropOutliers(core, ctx);
@@ -135,7 +145,12 @@ void placeInWorld(const RasterField& field, openvdb::FloatGrid& grid) {
 
 // An image as a slab, a volume by its threshold or labels; both have a domain.
 LevelSet loadRaster(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
-    const Raster raster = readRaster(path, {options.grid}, ctx);
+    Raster raster = readRaster(path, {options.grid}, ctx);
+    if (options.unitScale != 1) {
+        raster.spacing = raster.spacing * options.unitScale;
+        raster.origin = raster.origin * options.unitScale;
+        raster.unit.clear();
+    }
     const bool image = !raster.stack && raster.size.z == 1 && !options.imageAsVolume;
     if (image && (options.volume.threshold || !options.volume.labels.empty()))
         throw Error(ErrorCode::InvalidOption,
@@ -189,6 +204,15 @@ void requireModelPath(const std::string& path) {
 
 namespace {
 
+// A level set's values are lengths, so they change with the unit.
+FloatGridPtr inUnit(const openvdb::FloatGrid& grid, double scale) {
+    const openvdb::FloatGrid::Ptr scaled = grid.deepCopy();
+    for (auto it = scaled->beginValueAll(); it; ++it) it.setValue(float(double(*it) * scale));
+    openvdb::tools::changeBackground(scaled->tree(), float(double(grid.background()) * scale));
+    scaled->transform().postScale(scale);
+    return scaled;
+}
+
 LevelSet loaded(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
     const bool asRaster = options.imageAsVolume && isRasterPath(path);
     if (isPointPath(path) || (!asRaster && holdsPoints(path))) return loadPoints(path, options, ctx);
@@ -198,7 +222,9 @@ LevelSet loaded(const std::string& path, const ModelOptions& options, const RunC
     read.gridName = options.grid;
     read.iso = options.iso;
     const std::vector<GridPtr> grids = readVdbGrids(path, ctx);
-    LevelSet model = atVoxelSize(path, modelFromGrids(path, grids, read, ctx), options, ctx);
+    LevelSet model = modelFromGrids(path, grids, read, ctx);
+    if (options.unitScale != 1) model.grid = inUnit(*model.grid, options.unitScale);
+    model = atVoxelSize(path, model, options, ctx);
     if (options.carry) {
         // All except the one that became the model.
         const GridPtr used = pickedGrid(path, grids, read);
@@ -215,6 +241,8 @@ void validate(const ModelOptions& options) {
                   roundedText(options.voxelSize, 6), "above 0 (world)");
     requireOption(options.resolution == 0 || (options.resolution >= 2 && options.resolution <= 100000),
                   "resolution", std::to_string(options.resolution), "a whole number from 2 to 100000");
+    requireOption(options.unitScale > 0 && options.unitScale < 1e30, "unitScale",
+                  roundedText(options.unitScale, 6), "above 0");
     requireHalfWidth(options.halfWidth);
     validate(options.solid);
     VdbReadOptions read;
@@ -227,6 +255,7 @@ void validate(const ModelOptions& options) {
 LevelSet loadModel(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
     requireModelPath(path);
     validate(options);
+    noteUnusedOptions(path, options, ctx);
     return withThreads(ctx, [&] { return loaded(path, options, ctx); });
 }
 

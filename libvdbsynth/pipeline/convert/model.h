@@ -23,6 +23,9 @@ struct ModelOptions {
     bool carry = false;         ///< fills LevelSet::attributes from a VDB's other grids, or the attributes of
                                 ///< vertices and points
     bool keepSource = false;    ///< keeps a mesh in LevelSet::source
+    /// The file's unit in that of the result: 1000 reads metres as millimetres. Multiplies all coordinates,
+    /// above 0. Sizes in these options are in the result's unit.
+    double unitScale = 1;
     bool imageAsVolume = false;  ///< reads an image as a volume of one slice
 };
 

@@ -1,4 +1,4 @@
-#include "libvdbsynth/io/readers/row_text.h"
+#include "libvdbsynth/io/points/row_text.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,8 +1,8 @@
 // Rows of numbers: .xyz, .pwn, .pts, .txt, .asc, .csv, .xyzn, .xyzrgb.
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
-#include "libvdbsynth/io/readers/point_columns.h"
-#include "libvdbsynth/io/readers/row_text.h"
+#include "libvdbsynth/io/points/point_columns.h"
+#include "libvdbsynth/io/points/row_text.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
-#include "libvdbsynth/io/readers/point_readers.h"
+#include "libvdbsynth/io/points/point_readers.h"
 
 #include <array>
 #include <cstddef>

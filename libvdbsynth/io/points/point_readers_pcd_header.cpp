@@ -1,7 +1,7 @@
 // The header of a .pcd, and its compression.
 #include "libvdbsynth/base/error.h"
-#include "libvdbsynth/io/readers/point_readers_steps.h"
-#include "libvdbsynth/io/readers/row_text.h"
+#include "libvdbsynth/io/points/point_readers_steps.h"
+#include "libvdbsynth/io/points/row_text.h"
 #include "libvdbsynth/io/readers/text_scanner.h"
 
 #include <set>

@@ -1,4 +1,4 @@
-#include "libvdbsynth/io/readers/row_text.h"
+#include "libvdbsynth/io/points/row_text.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"

@@ -1,6 +1,6 @@
 // Points from a table whose columns have a meaning, and what is said about it.
 #include "libvdbsynth/base/error.h"
-#include "libvdbsynth/io/readers/point_columns.h"
+#include "libvdbsynth/io/points/point_columns.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Points as a NumPy array of rows or columns of coordinates.
 #include "libvdbsynth/base/checked_product.h"
 #include "libvdbsynth/base/error.h"
-#include "libvdbsynth/io/readers/point_columns.h"
+#include "libvdbsynth/io/points/point_columns.h"
 #include "libvdbsynth/io/readers/raster_readers.h"
 
 #include <algorithm>

@@ -2,9 +2,9 @@
 #include "libvdbsynth/base/checked_product.h"
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
-#include "libvdbsynth/io/readers/point_readers.h"
-#include "libvdbsynth/io/readers/point_readers_steps.h"
-#include "libvdbsynth/io/readers/row_text.h"
+#include "libvdbsynth/io/points/point_readers.h"
+#include "libvdbsynth/io/points/point_readers_steps.h"
+#include "libvdbsynth/io/points/row_text.h"
 
 #include <algorithm>
 #include <cstring>

@@ -1,4 +1,4 @@
-#include "libvdbsynth/io/readers/point_readers_steps.h"
+#include "libvdbsynth/io/points/point_readers_steps.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,4 +1,4 @@
-#include "libvdbsynth/io/readers/point_readers.h"
+#include "libvdbsynth/io/points/point_readers.h"
 
 #include <catch2/catch.hpp>
 

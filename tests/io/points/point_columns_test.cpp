@@ -1,4 +1,4 @@
-#include "libvdbsynth/io/readers/point_columns.h"
+#include "libvdbsynth/io/points/point_columns.h"
 
 #include <catch2/catch.hpp>
 

@@ -155,7 +155,8 @@ void writeGreyPng(const std::string& path, int width, int height, const std::vec
     writeWholeFile(path, bytes);
 }
 
-Raster readPng(const std::string& path, const std::string& content, const RunContext& ctx) {
+Raster readPng(const std::string& path, const std::string& content, const RasterReadOptions&,
+               const RunContext& ctx) {
     Source source{content};
     png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, fail, ignore);
     png_infop info = png ? png_create_info_struct(png) : nullptr;

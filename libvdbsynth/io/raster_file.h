@@ -13,6 +13,12 @@ bool isRasterPath(const std::string& path);
 /// The extensions of isRasterPath in words, for messages.
 extern const char* const kRasterExtensions;
 
+struct RasterReadOptions {
+    /// Which array, channel or frame of a file that holds several, by its name in Raster::arrays; empty: the
+    /// one that the format's writers mean by default, said in a note.
+    std::string array;
+};
+
 /// Reads an image or a volume. Sizes are checked against the file's size or `maxMemory`
 /// before memory is allocated.
 /// - png (1 to 16 bits, palettes), jpg, pgm and ppm (ascii or binary, to 16 bits), tif (8 to 64 bits, integer
@@ -23,10 +29,10 @@ extern const char* const kRasterExtensions;
 ///   vti (ascii, inline and appended base64, raw, zlib), nii (NIfTI-1 and 2; axes flipped and permuted
 ///   to point to the patient's right, front and top; an oblique rotation is ignored with a note),
 ///   sgems and gslib text, inr.
-/// @throw Error Io, BadData (truncated, corrupt, an unsupported kind of file or data), EmptyInput (no
-/// samples), Memory, InvalidOption (extension)
+/// @throw Error Io, BadData (truncated, corrupt, an unsupported kind of file or data, no array of that name),
+/// EmptyInput (no samples), Memory, InvalidOption (extension)
 /// @par Cost    O(samples), four bytes per sample and channel besides the file   @par Repeats yes
-Raster readRaster(const std::string& path, const RunContext& ctx = {});
+Raster readRaster(const std::string& path, const RasterReadOptions& options = {}, const RunContext& ctx = {});
 
 /// Writes a grey image of 16 bits, with alpha where `values` has NaN. @param values  [height x width] 0..1
 /// @throw Error Io

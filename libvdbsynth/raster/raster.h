@@ -21,6 +21,8 @@ struct Raster {
     Vec3d spacing{1, 1, 1};  ///< [world] between samples along columns, rows, slices
     Vec3d origin{0, 0, 0};   ///< [world] of the first sample
     std::string unit;        ///< of the spacing, if the file has one: "m", "mm"; else empty
+    /// Names of the arrays, channels or frames that the file holds where they are several; one was read.
+    std::vector<std::string> arrays;
 
     std::size_t index(int x, int y, int z) const {
         return (std::size_t(z) * std::size_t(size.y) + std::size_t(y)) * std::size_t(size.x) + std::size_t(x);

@@ -16,7 +16,7 @@ namespace {
 test::Thrown reading(const std::string& path, std::uint64_t maxMemory = 0) {
     RunContext ctx;
     ctx.maxMemory = maxMemory;
-    return test::thrownBy([&] { readRaster(path, ctx); });
+    return test::thrownBy([&] { readRaster(path, {}, ctx); });
 }
 
 const std::vector<float> kRamp{0, 1, 2, 3, 4, 5};

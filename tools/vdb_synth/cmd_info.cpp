@@ -57,7 +57,7 @@ Json pointsInfo(const std::string& path, const Run& run) {
 }
 
 Json rasterInfo(const std::string& path, const Run& run) {
-    const Raster raster = readRaster(path, run.context);
+    const Raster raster = readRaster(path, {run.arguments.text("grid")}, run.context);
     const RasterRange range = rangeOf(raster);
     Json info{{"file", run.withoutTemporaries(path)},
               {"kind", raster.stack || raster.size.z > 1 ? "volume" : "image"},
@@ -70,6 +70,7 @@ Json rasterInfo(const std::string& path, const Run& run) {
               {"distinct_values", range.distinct.empty() ? Json("over 256") : Json(range.distinct.size())},
               {"samples_without_data", range.missing},
               {"infinite_samples", range.infinite}};
+    if (raster.arrays.size() > 1) info["arrays"] = raster.arrays;
     if (raster.knownSpacing) {
         info["spacing"] = triple(raster.spacing);
         info["origin"] = triple(raster.origin);

@@ -1,26 +1,43 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/io/raster_file.h"
 #include "libvdbsynth/raster/raster.h"
 
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <vector>
 
 namespace vdbsynth {
 
 // One reader per format, behind readRaster (raster_file.h). `path` is for messages,
 // `content` is the whole file.
 // @throw Error BadData, Memory
-Raster readPng(const std::string& path, const std::string& content, const RunContext& ctx);
-Raster readJpeg(const std::string& path, const std::string& content, const RunContext& ctx);
-Raster readPnm(const std::string& path, const std::string& content, const RunContext& ctx);
-Raster readTiff(const std::string& path, const std::string& content, const RunContext& ctx);
-Raster readExr(const std::string& path, const std::string& content, const RunContext& ctx);
-Raster readNpy(const std::string& path, const std::string& content, const RunContext& ctx);
-Raster readVti(const std::string& path, const std::string& content, const RunContext& ctx);
-Raster readNifti(const std::string& path, const std::string& content, const RunContext& ctx);
-Raster readGslib(const std::string& path, const std::string& content, const RunContext& ctx);
-Raster readInr(const std::string& path, const std::string& content, const RunContext& ctx);
+Raster readPng(const std::string& path, const std::string& content, const RasterReadOptions& options,
+               const RunContext& ctx);
+Raster readJpeg(const std::string& path, const std::string& content, const RasterReadOptions& options,
+                const RunContext& ctx);
+Raster readPnm(const std::string& path, const std::string& content, const RasterReadOptions& options,
+               const RunContext& ctx);
+Raster readTiff(const std::string& path, const std::string& content, const RasterReadOptions& options,
+                const RunContext& ctx);
+Raster readExr(const std::string& path, const std::string& content, const RasterReadOptions& options,
+               const RunContext& ctx);
+Raster readNpy(const std::string& path, const std::string& content, const RasterReadOptions& options,
+               const RunContext& ctx);
+Raster readVti(const std::string& path, const std::string& content, const RasterReadOptions& options,
+               const RunContext& ctx);
+Raster readNifti(const std::string& path, const std::string& content, const RasterReadOptions& options,
+                 const RunContext& ctx);
+Raster readGslib(const std::string& path, const std::string& content, const RasterReadOptions& options,
+                 const RunContext& ctx);
+Raster readInr(const std::string& path, const std::string& content, const RasterReadOptions& options,
+               const RunContext& ctx);
+
+// The place in `names` of the array to read: that of `options`, else `standard`, which a note says where
+// there are several names. @throw Error BadData (no such name; the message lists the names)
+std::size_t chosenArray(const std::string& path, const std::vector<std::string>& names, std::size_t standard,
+                        const RasterReadOptions& options, const RunContext& ctx);
 
 // A raster of this size with memory for its values.
 // @throw Error BadData (a side under 1 or over 2^24), Memory

@@ -103,7 +103,8 @@ Raster readPixels(const std::string& path, const std::string& content, const Run
 
 }  // namespace
 
-Raster readExr(const std::string& path, const std::string& content, const RunContext& ctx) {
+Raster readExr(const std::string& path, const std::string& content, const RasterReadOptions&,
+               const RunContext& ctx) {
     if (content.compare(0, 4, "\x76\x2f\x31\x01") != 0)
         throw Error(ErrorCode::BadData, path + ": not an OpenEXR image");
     try {

@@ -52,7 +52,8 @@ bool readRows(jpeg_decompress_struct& info, Failure& failure, JSAMPLE* row, Rast
 
 }  // namespace
 
-Raster readJpeg(const std::string& path, const std::string& content, const RunContext& ctx) {
+Raster readJpeg(const std::string& path, const std::string& content, const RasterReadOptions&,
+                const RunContext& ctx) {
     jpeg_decompress_struct info{};
     Failure failure{};
     info.err = jpeg_std_error(&failure.base);

@@ -173,7 +173,8 @@ Raster aligned(const std::string& path, Raster stored, const Header& h, const Ru
 
 }  // namespace
 
-Raster readNifti(const std::string& path, const std::string& content, const RunContext& ctx) {
+Raster readNifti(const std::string& path, const std::string& content, const RasterReadOptions&,
+                 const RunContext& ctx) {
     const Header h = parseHeader(path, content);
     const int dimensions = int(h.dims[0]);
     if (!(h.dims[0] >= 2 && h.dims[0] <= 7))

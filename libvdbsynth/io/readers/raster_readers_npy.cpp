@@ -64,7 +64,8 @@ Header parseHeader(const std::string& path, const std::string& text) {
 
 }  // namespace
 
-Raster readNpy(const std::string& path, const std::string& content, const RunContext& ctx) {
+Raster readNpy(const std::string& path, const std::string& content, const RasterReadOptions&,
+               const RunContext& ctx) {
     if (content.compare(0, 6, "\x93NUMPY") != 0 || content.size() < 12)
         throw Error(ErrorCode::BadData, path + ": not an npy file");
     const bool longHeader = content[6] > 1;

@@ -11,7 +11,8 @@ namespace vdbsynth {
 
 // First line: sides, on some files followed by spacing and origin; then the number of variables, a line with
 // the name of each, then rows of values, x fastest. The first variable is read.
-Raster readGslib(const std::string& path, const std::string& content, const RunContext& ctx) {
+Raster readGslib(const std::string& path, const std::string& content, const RasterReadOptions&,
+                 const RunContext& ctx) {
     TextScanner scanner(path, content, '\0');
     const std::int64_t columns = scanner.whole(), rows = scanner.whole(), slices = scanner.whole();
     scanner.skipLine();
@@ -61,7 +62,8 @@ SampleType inrType(const std::string& path, const std::string& type, const std::
 
 }  // namespace
 
-Raster readInr(const std::string& path, const std::string& content, const RunContext& ctx) {
+Raster readInr(const std::string& path, const std::string& content, const RasterReadOptions&,
+               const RunContext& ctx) {
     const std::size_t end = content.find("##}\n");
     if (content.compare(0, 13, "#INRIMAGE-4#{") != 0 || end == std::string::npos)
         throw Error(ErrorCode::BadData, path + ": not an INRIMAGE file");

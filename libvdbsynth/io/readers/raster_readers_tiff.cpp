@@ -309,7 +309,8 @@ int countPages(TIFF* file, const Layout& first, const std::string& path) {
 
 }  // namespace
 
-Raster readTiff(const std::string& path, const std::string& content, const RunContext& ctx) {
+Raster readTiff(const std::string& path, const std::string& content, const RasterReadOptions&,
+                const RunContext& ctx) {
     TIFFSetErrorHandler(keepFailure);
     TIFFSetWarningHandler(nullptr);
     lastFailure.clear();

@@ -214,7 +214,8 @@ void readArray(const std::string& path, const pugi::xml_node& array, const Encod
 
 }  // namespace
 
-Raster readVti(const std::string& path, const std::string& content, const RunContext& ctx) {
+Raster readVti(const std::string& path, const std::string& content, const RasterReadOptions&,
+               const RunContext& ctx) {
     Encoding encoding;
     const std::string xml = cutAppended(content, encoding);
     pugi::xml_document document;

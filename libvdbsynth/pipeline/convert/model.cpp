@@ -112,7 +112,7 @@ LevelSet atVoxelSize(const std::string& path, const LevelSet& model, const Model
 
 // An image as a slab, a volume by its threshold or labels; both have a domain.
 LevelSet loadRaster(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
-    const Raster raster = readRaster(path, ctx);
+    const Raster raster = readRaster(path, {options.grid}, ctx);
     const bool image = !raster.stack && raster.size.z == 1 && !options.imageAsVolume;
     if (image && (options.volume.threshold || !options.volume.labels.empty()))
         throw Error(ErrorCode::InvalidOption,

@@ -22,7 +22,7 @@ void readAny(const std::string& path) {
     RunContext ctx;
     ctx.maxMemory = 500000000;
     if (isRasterPath(path))
-        readRaster(path, ctx);
+        readRaster(path, {}, ctx);
     else if (isPointPath(path) || holdsPoints(path))
         readPoints(path, ctx);
     else

@@ -180,14 +180,14 @@ void validate(const VolumeOptions& options) {
         requireOption(range.first <= range.second, "labels",
                       exactText(range.first) + ".." + exactText(range.second),
                       "a smaller and a larger value");
-    requireOption(options.pixelSize >= 0 && options.pixelSize < 1e30, "pixelSize",
-                  roundedText(options.pixelSize, 6), "above 0 (world), or 0 for the file's");
+    requirePixelSize(options.pixelSize, options.pixelSides);
 }
 
 RasterField volumeField(const std::string& name, const Raster& given, const VolumeOptions& options,
                         const RunContext& ctx) {
     validate(options);
     requireMemory(ctx, double(given.sampleCount()) * 12, name, "crop or shrink it first");
+    const Vec3d cell = cellSides(name, given, /* image= */ false, options.pixelSize, options.pixelSides);
     Stage stage(ctx, "volume to field", 1);
     const Raster colourless = given.channels == 1 ? Raster() : luminance(given);
     const Raster& raster = given.channels == 1 ? given : colourless;
@@ -208,11 +208,11 @@ RasterField volumeField(const std::string& name, const Raster& given, const Volu
         result.field =
             labelField(name, raster, range, chooseLabels(name, range, options, result.description), ctx);
     }
-    const double smallest = std::min({raster.spacing.x, raster.spacing.y, raster.spacing.z});
-    result.voxelSize = options.pixelSize > 0 ? options.pixelSize : smallest;
-    result.origin = options.pixelSize > 0 ? Vec3d{0, 0, 0} : raster.origin;
+    const double smallest = std::min({cell.x, cell.y, cell.z});
+    result.voxelSize = smallest;
+    result.origin = options.pixelSize > 0 || options.pixelSides.x > 0 ? Vec3d{0, 0, 0} : raster.origin;
     result.domain = IndexBox::fromSize(raster.size);
-    const Vec3d ratio{smallest / raster.spacing.x, smallest / raster.spacing.y, smallest / raster.spacing.z};
+    const Vec3d ratio{smallest / cell.x, smallest / cell.y, smallest / cell.z};
     if (std::min({ratio.x, ratio.y, ratio.z}) < 1 - 1e-6) {
         for (int axis = 0; axis < 3; ++axis)
             if (!(raster.size[axis] / ratio[axis] < 1e8))

@@ -15,6 +15,7 @@ add_cli_test(path_test Attributes Doors StandardStreams MainPath Determinism Wor
 add_cli_test(error_test BadOptions BadFiles Disk Signals)
 add_cli_test(readme_test Readme)
 add_cli_test(repeat_test Repeat)
+add_cli_test(reported_images_test Images)
 add_cli_test(rival_test Rival)
 add_cli_test(synth_test Synth)
 add_cli_test(programs_test Programs)

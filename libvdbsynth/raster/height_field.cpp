@@ -114,12 +114,16 @@ struct Slab {
     double pixelX, pixelY, voxel, scale, offset, low, high, base;  // height = value * scale + offset
 };
 
-Slab planSlab(const Raster& raster, const RasterRange& range, const HeightOptions& options) {
+bool asksPixelSize(const HeightOptions& options) {
+    return options.pixelSize > 0 || options.pixelSides.x > 0;
+}
+
+Slab planSlab(const std::string& name, const Raster& raster, const RasterRange& range,
+              const HeightOptions& options) {
     Slab slab{};
-    const double smallest = std::min(raster.spacing.x, raster.spacing.y);
-    const double unit = options.pixelSize > 0 ? options.pixelSize / smallest : 1;
-    slab.pixelX = raster.spacing.x * unit;
-    slab.pixelY = raster.spacing.y * unit;
+    const Vec3d pixel = cellSides(name, raster, /* image= */ true, options.pixelSize, options.pixelSides);
+    slab.pixelX = pixel.x;
+    slab.pixelY = pixel.y;
     const double side = std::max(raster.size.x * slab.pixelX, raster.size.y * slab.pixelY);
     slab.voxel = options.voxelSize > 0    ? options.voxelSize
                  : options.resolution > 0 ? side / options.resolution
@@ -159,7 +163,7 @@ void validate(const HeightOptions& options) {
                       "above 0 (world), or 0 for the default");
     };
     length(options.voxelSize, "voxelSize");
-    length(options.pixelSize, "pixelSize");
+    requirePixelSize(options.pixelSize, options.pixelSides);
     length(options.height, "height");
     length(options.base, "base");
     requireOption(options.resolution == 0 || (options.resolution >= 2 && options.resolution <= 100000),
@@ -179,7 +183,7 @@ RasterField heightField(const std::string& name, const Raster& given, const Heig
                     name + ": " + std::to_string(range.infinite) + " values are infinite");
     if (range.missing == raster.values.size())
         throw Error(ErrorCode::EmptyInput, name + ": no pixel has data");
-    const Slab slab = planSlab(raster, range, options);
+    const Slab slab = planSlab(name, raster, range, options);
     const double columns = raster.size.x * slab.pixelX / slab.voxel,
                  rows = raster.size.y * slab.pixelY / slab.voxel,
                  tall = (slab.high - slab.low + slab.base) / slab.voxel;
@@ -227,7 +231,7 @@ RasterField heightField(const std::string& name, const Raster& given, const Heig
                          rounded(slab.pixelX) +
                          (slab.pixelX == slab.pixelY ? "" : " x " + rounded(slab.pixelY)) + ", voxels of " +
                          rounded(slab.voxel) + " (world" +
-                         (raster.unit.empty() || options.pixelSize > 0 ? "" : ", in " + raster.unit) + ")" +
+                         (raster.unit.empty() || asksPixelSize(options) ? "" : ", in " + raster.unit) + ")" +
                          (options.height > 0 ? "" : "; `height` sets how tall it is");
     if (range.missing > 0)
         result.description += "; " + std::to_string(range.missing) + " pixels without data are holes";

@@ -40,6 +40,15 @@ struct Raster {
 /// weights, without gamma correction: heights are painted in displayed values); a grey raster unchanged.
 Raster luminance(Raster raster);
 
+/// @param size   [world] of the smallest side of a cell; 0: unset
+/// @param sides  [world] along columns, rows and, for volumes, slices; 0: unset
+/// @throw Error InvalidOption `pixelSize` (negative, too large, both given, columns without rows)
+void requirePixelSize(double size, const Vec3d& sides);
+
+/// The sides [world] of a raster's cells: its own unless they are given. An image has two, its third is 1.
+/// @throw Error InvalidOption (three sides for an image, two for a volume)
+Vec3d cellSides(const std::string& name, const Raster& raster, bool image, double size, const Vec3d& sides);
+
 /// The range of a raster's values.
 struct RasterRange {
     double minimum = 0, maximum = 0;

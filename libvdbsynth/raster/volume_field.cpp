@@ -155,14 +155,14 @@ void validate(const VolumeOptions& options) {
         requireOption(range.first <= range.second, "labels",
                       exactText(range.first) + ".." + exactText(range.second),
                       "a smaller and a larger value");
-    requireOption(options.pixelSize >= 0 && options.pixelSize < 1e30, "pixelSize",
-                  roundedText(options.pixelSize, 6), "above 0 (world), or 0 for the file's");
+    requirePixelSize(options.pixelSize, options.pixelSides);
 }
 
 RasterField volumeField(const std::string& name, const Raster& given, const VolumeOptions& options,
                         const RunContext& ctx) {
     validate(options);
     requireMemory(ctx, double(given.sampleCount()) * 12, name, "crop or shrink it first");
+    const Vec3d cell = cellSides(name, given, /* image= */ false, options.pixelSize, options.pixelSides);
     Stage stage(ctx, "volume to field", 1);
     const Raster colourless = given.channels == 1 ? Raster() : luminance(given);
     const Raster& raster = given.channels == 1 ? given : colourless;
@@ -183,7 +183,13 @@ RasterField volumeField(const std::string& name, const Raster& given, const Volu
         result.field =
             labelField(name, raster, range, chooseLabels(name, range, options, result.description), ctx);
     }
-    placeField(name, raster, options.pixelSize, result, ctx);
+    Raster place;
+    place.size = raster.size;
+    place.axes = raster.axes;
+    place.spacing = cell;
+    const bool ownOrigin = options.pixelSize <= 0 && options.pixelSides.x <= 0;
+    if (ownOrigin) place.origin = raster.origin;
+    placeField(name, place, result, ctx);
     stage.advance();
     return result;
 }

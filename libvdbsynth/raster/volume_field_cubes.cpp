@@ -141,11 +141,10 @@ void resampleSheared(const std::string& name, const Raster& raster, double small
 
 }  // namespace
 
-void placeField(const std::string& name, const Raster& raster, double pixelSize, RasterField& result,
-                const RunContext& ctx) {
+void placeField(const std::string& name, const Raster& raster, RasterField& result, const RunContext& ctx) {
     const double smallest = std::min({raster.spacing.x, raster.spacing.y, raster.spacing.z});
-    result.voxelSize = pixelSize > 0 ? pixelSize : smallest;
-    result.origin = pixelSize > 0 ? Vec3d{0, 0, 0} : raster.origin;
+    result.voxelSize = smallest;
+    result.origin = raster.origin;
     result.domain = IndexBox::fromSize(raster.size);
     result.axes = raster.axes;
     if (turnOf(raster.axes).shear > 1e-9) {

@@ -9,9 +9,8 @@ namespace vdbsynth {
 
 /// Gives a field on a raster's samples its voxels, which are cubes: those samples, or resampled ones where
 /// their cells are longer than wide or sheared; the description says so.
-/// @param pixelSize  [world] of the smallest side of a cell; 0: the raster's, and its origin
+/// @param raster  its size, spacing, origin and axes; its values are not read
 /// @throw Error Unusable (cells over 1e8 times as long as wide), Memory
-void placeField(const std::string& name, const Raster& raster, double pixelSize, RasterField& result,
-                const RunContext& ctx);
+void placeField(const std::string& name, const Raster& raster, RasterField& result, const RunContext& ctx);
 
 }  // namespace vdbsynth

@@ -262,16 +262,6 @@ TEST_CASE("readRaster: a palette stack gives the numbers that are stored", "[io]
     CHECK(readRaster(folder.write("a.tif", bytes)).values == std::vector<float>{0, 1, 4, 4, 1, 0});
 }
 
-TEST_CASE("readRaster: an ImageJ stack behind one page is refused", "[io][regression]") {
-    const test::TemporaryFolder folder;
-    std::string bytes = test::tiff(1, 1, 8, 1, {"a"}, "ImageJ=1.5\nimages=8\n");
-    const std::size_t tag = bytes.find("\x81\xa4\x02");  // 42113 becomes 270, the description
-    REQUIRE(tag != std::string::npos);
-    bytes[tag] = '\x0e';
-    bytes[tag + 1] = '\x01';
-    CHECK(test::contains(reading(folder.write("a.tif", bytes)).message, "ImageJ stack"));
-}
-
 TEST_CASE("readRaster: NIfTI voxels never begin in the header", "[io][regression]") {
     const test::TemporaryFolder folder;
     std::string bytes = test::nifti(2, 1, 1, std::string("\7\5", 2), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0});

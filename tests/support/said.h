@@ -6,10 +6,10 @@
 
 namespace vdbsynth::test {
 
-/// Collects the messages of a run.
+/// What a run says: notes and warnings, one a line.
 struct Said {
     RunContext ctx;
-    std::vector<std::string> notes, warnings;
+    std::vector<std::string> notes{}, warnings{};
 
     Said() {
         ctx.onMessage = [this](MessageLevel level, const std::string& text) {
@@ -23,6 +23,12 @@ struct Said {
     bool nothing() const { return notes.empty() && warnings.empty(); }
     bool noted(const std::string& part) const { return found(notes, part); }
     bool warned(const std::string& part) const { return found(warnings, part); }
+    std::string all() const {
+        std::string text;
+        for (const auto& list : {notes, warnings})
+            for (const std::string& line : list) text += line + "\n";
+        return text;
+    }
 
 private:
     static bool found(const std::vector<std::string>& said, const std::string& part) {

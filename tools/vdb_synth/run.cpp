@@ -134,7 +134,11 @@ void Run::requireInputs(std::size_t low, std::size_t high) const {
 namespace {
 
 void readRasterOptions(const Arguments& arguments, ModelOptions& options) {
-    options.heights.pixelSize = options.volume.pixelSize = arguments.real("pixel-size");
+    const std::vector<double> sides = arguments.lengths("pixel-size");
+    if (sides.size() == 1) options.heights.pixelSize = options.volume.pixelSize = sides[0];
+    if (sides.size() > 1)
+        options.heights.pixelSides =
+            options.volume.pixelSides = {sides[0], sides[1], sides.size() > 2 ? sides[2] : 0};
     options.heights.height = arguments.real("height");
     options.heights.base = arguments.real("base");
     const std::string plane = arguments.text("plane");

@@ -32,7 +32,8 @@ void noteUnusedOptions(const std::string& path, const ModelOptions& options, con
     note(options.solid.open == OpenMesh::Shell, faces, "open");
     note(options.volume.threshold.has_value(), kind == Kind::Raster, "threshold");
     note(!options.volume.labels.empty(), kind == Kind::Raster, "labels");
-    note(hasPixelSize(options.heights), kind == Kind::Raster, "pixelSize");
+    note(options.heights.pixelSize > 0 || options.heights.pixelSides.x > 0, kind == Kind::Raster,
+         "pixelSize");
     note(options.heights.base > 0, kind == Kind::Raster, "base");
 }
 

@@ -1,6 +1,7 @@
 #include "libvdbsynth/io/raster_file.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/printable_text.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/readers/raster_readers.h"
@@ -134,22 +135,7 @@ void sayTurn(const std::string& path, const Raster& raster, const RunContext& ct
 }
 
 std::string printable(std::string_view text, std::size_t most) {
-    std::string result;
-    for (std::size_t at = 0; at < text.size() && result.size() < most;) {
-        const auto byte = [&](std::size_t i) { return i < text.size() ? std::uint8_t(text[i]) : 0; };
-        const std::size_t length = byte(at) >= 0xc2 && byte(at) < 0xe0   ? 2
-                                   : byte(at) >= 0xe0 && byte(at) < 0xf0 ? 3
-                                   : byte(at) >= 0xf0 && byte(at) < 0xf5 ? 4
-                                                                         : 1;
-        bool whole = length > 1 || (byte(at) >= ' ' && byte(at) <= '~');
-        for (std::size_t i = 1; i < length; ++i) whole = whole && byte(at + i) >> 6 == 2;
-        if (whole)
-            result.append(text.substr(at, length));
-        else
-            result += '?';
-        at += whole ? length : 1;
-    }
-    return result;
+    return printableText(text.substr(0, most));
 }
 
 Raster makeRaster(const std::string& path, std::int64_t columns, std::int64_t rows, std::int64_t slices,

@@ -90,14 +90,6 @@ LevelSet loadMesh(const std::string& path, const ModelOptions& options, const Ru
     return model;
 }
 
-// From places relative to an origin to the world's, without resampling.
-void moveTo(const Vec3d& origin, LevelSet& model) {
-    if (origin.x == 0 && origin.y == 0 && origin.z == 0) return;
-    model.grid->transform().postTranslate({origin.x, origin.y, origin.z});
-    for (const GridPtr& grid : model.attributes)
-        grid->transform().postTranslate({origin.x, origin.y, origin.z});
-}
-
 LevelSet loadPoints(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
     PointFile file = readPoints(path, ctx);
     if (file.invalid > 0)
@@ -111,7 +103,6 @@ LevelSet loadPoints(const std::string& path, const ModelOptions& options, const 
     LevelSet model =
         asModel(pointsToSolid(file.cloud, voxelSize, options.halfWidth, path, options.solid, ctx), path);
     if (options.carry) model.attributes = attributesToGrids(core, *model.grid, ctx);
-    moveTo(file.cloud.origin, model);
     return model;
 }
 

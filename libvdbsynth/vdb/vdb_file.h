@@ -12,7 +12,8 @@ namespace vdbsynth {
 
 /// One grid of a VDB file, as `info` prints it.
 struct GridSummary {
-    std::string name, type, gridClass;
+    std::string name;  ///< NAME[0], NAME[1], ... where several grids have it, as `gridName` takes it
+    std::string type, gridClass;
     Vec3d voxelSize;
     bool linear = true, halfPrecision = false;
     std::uint64_t activeVoxels = 0;
@@ -41,17 +42,23 @@ struct VdbContents {
 VdbContents readVdb(const std::string& path, const RunContext& ctx = {});
 
 struct VdbReadOptions {
-    std::string gridName;  ///< which grid; empty: "surface", else the only level set, else the first level
-                           ///< set, else a fog volume with `iso`
-    std::optional<double> iso;  ///< a fog volume is solid where its value is above this
+    /// Which grid, as its name or NAME[1] for the second of that name. Empty: "surface", else the first level
+    /// set, else the first field of distances, else a fog volume with `iso`; a note names it where several
+    /// could be meant.
+    std::string gridName;
+    /// A fog volume is solid where its value is above this; the surface of a field of distances without a
+    /// class lies at this distance.
+    std::optional<double> iso;
 };
 
 /// @throw Error InvalidOption (an iso that is not finite)
 void validate(const VdbReadOptions& options);
 
-/// Reads a model from any VDB file: level sets unchanged (half precision as floats, an anisotropic or sheared
-/// transform resampled to its smallest voxel), fog volumes by `iso`. A recorded domain is kept; else the
-/// domain is the box of the solid.
+/// Reads a model from any VDB file: sound level sets unchanged (half precision as floats, an anisotropic or
+/// sheared transform resampled to its smallest voxel), others repaired (read/level_set_repair.h: turned
+/// signs, lost insides, open cuts, wrong backgrounds), fields of no class as level sets if their values are
+/// distances, fog volumes by `iso`. What is guessed or repaired is said in a note. A recorded domain is kept;
+/// else the domain is the box of the solid.
 /// @throw Error  Io (missing, a directory, not readable), BadData (not a VDB file, truncated, corrupt, NaN,
 ///               no usable grid, frustum transform), InvalidOption (an iso that is no number, null grids),
 ///               Unusable (a fog volume without iso), EmptyInput (no surface)
@@ -65,8 +72,9 @@ LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& gri
                         const VdbReadOptions& options = {}, const RunContext& ctx = {});
 
 /// The grid that modelFromGrids would convert. @throw Error BadData (none is usable)
+/// @param note  set to a sentence where several grids could be meant
 GridPtr pickedGrid(const std::string& path, const std::vector<GridPtr>& grids,
-                   const VdbReadOptions& options = {});
+                   const VdbReadOptions& options = {}, std::string* note = nullptr);
 
 /// The model at another voxel size; its domain is the same box of the world in whole voxels. A level set is
 /// resampled by its zero level, so detail under a voxel is lost, never added. @throw Error EmptyInput, Memory
@@ -74,7 +82,7 @@ LevelSet resampled(const LevelSet& model, double voxelSize, const RunContext& ct
 
 /// Reads a float or double grid unchanged: the named one, or the only one. @throw Error as readVdbModel
 FloatGridPtr readVdbFloatGrid(const std::string& path, const std::string& name, const RunContext& ctx = {});
-/// Reads one named grid of any type. @throw Error as readVdbModel
+/// Reads one named grid of any type, by its name or NAME[1]. @throw Error as readVdbModel
 GridPtr readVdbGrid(const std::string& path, const std::string& name, const RunContext& ctx = {});
 /// All grids of a file. @throw Error as readVdbModel
 std::vector<GridPtr> readVdbGrids(const std::string& path, const RunContext& ctx = {});

@@ -1,13 +1,16 @@
-// Which grid of a VDB file is the model, and its conversion to a level set.
+// A VDB file's grid as a level set.
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/read/field_kind.h"
+#include "libvdbsynth/vdb/read/level_set_repair.h"
 #include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "libvdbsynth/vdb/wall.h"
 
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/ChangeBackground.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,44 +18,8 @@
 namespace vdbsynth {
 namespace {
 
-bool isLevelSet(const openvdb::FloatGrid& grid) {
-    if (grid.getGridClass() == openvdb::GRID_LEVEL_SET) return true;
-    if (grid.getGridClass() != openvdb::GRID_UNKNOWN || grid.background() <= 0) return false;
-    const ValueRange range = rangeOf(grid);
-    return range.minimum < 0 && range.maximum > 0;
-}
-
-// The grid itself, for any scalar type.
-GridPtr pickGrid(const std::string& path, const std::vector<GridPtr>& grids, const VdbReadOptions& options) {
-    requireGrids(grids);
-    std::string names;
-    GridPtr levelSet, fog;
-    for (const GridPtr& grid : grids) {
-        names += (names.empty() ? "" : ", ") + grid->getName() + " (" + grid->valueType() + ")";
-        const openvdb::FloatGrid::Ptr floats = asFloat(grid);
-        if (!options.gridName.empty() && grid->getName() == options.gridName) {
-            if (!floats)
-                throw Error(ErrorCode::BadData, path + ": grid \"" + options.gridName + "\" holds " +
-                                                    grid->valueType() + "; a float or double grid is needed");
-            return grid;
-        }
-        if (!floats) continue;
-        if (isLevelSet(*floats)) {
-            if (!levelSet || (grid->getName() == kSurfaceName && levelSet->getName() != kSurfaceName))
-                levelSet = grid;
-        } else if (!fog) {
-            fog = grid;
-        }
-    }
-    if (!options.gridName.empty())
-        throw Error(ErrorCode::BadData, "`grid` " + options.gridName + ": not in " + path + ", which has " +
-                                            (names.empty() ? "no grids" : names));
-    if (options.iso && fog) return fog;
-    if (levelSet) return levelSet;
-    if (fog) return fog;
-    throw Error(ErrorCode::BadData, path + ": no usable grid; a float or double grid is needed, it has " +
-                                        (names.empty() ? "no grids" : names));
-}
+// OpenVDB refuses to scale by voxels of less volume.
+constexpr double kLeastVoxel = 3e-15;
 
 void refuseUnusable(const std::string& path, const openvdb::FloatGrid& grid) {
     if (!grid.transform().isLinear())
@@ -71,6 +38,11 @@ void refuseUnusable(const std::string& path, const openvdb::FloatGrid& grid) {
         if (!std::isfinite(m.asPointer()[i]))
             throw Error(ErrorCode::BadData, path + ": grid \"" + grid.getName() +
                                                 "\" has a transform with NaN or infinite values");
+    if (std::abs(grid.voxelSize().length()) > 0 && std::abs(m.det()) < kLeastVoxel)
+        throw Error(ErrorCode::BadData, path + ": grid \"" + grid.getName() + "\" has voxels of " +
+                                            roundedText(grid.voxelSize()[0], 3) +
+                                            ", and OpenVDB allows none under about 0.000015; scale its "
+                                            "transform by 1000 where it was made, or set `unitScale`");
     if (std::abs(m.det()) < 1e-300)
         throw Error(ErrorCode::BadData, path + ": grid \"" + grid.getName() + "\" has a singular transform");
 }
@@ -115,6 +87,47 @@ openvdb::FloatGrid::Ptr fogToLevelSet(const std::string& path, const openvdb::Fl
     return rebuildLevelSet(*insideOut(fog, iso), kHalfWidth, path + ": `iso`", ctx);
 }
 
+// What lies beyond a fog's voxels is not solid, whatever its background says.
+openvdb::FloatGrid::Ptr emptyAround(const std::string& path, const openvdb::FloatGrid::Ptr& fog, double iso,
+                                    const RunContext& ctx) {
+    const ValueRange range = rangeOf(*fog);
+    if (!(double(fog->background()) > iso) || !(range.minimum < iso)) return fog;
+    message(ctx, MessageLevel::Note,
+            path + ": grid \"" + fog->getName() + "\": its background of " +
+                roundedText(double(fog->background()), 4) +
+                " would be solid; what lies beyond its voxels is taken as outside");
+    openvdb::FloatGrid::Ptr field = fog->deepCopy();
+    openvdb::tools::changeBackground(field->tree(), float(range.minimum));
+    return field;
+}
+
+// A field of distances whose surface lies at `iso`; a level set as it is.
+openvdb::FloatGrid::Ptr atDistance(const std::string& path, const openvdb::FloatGrid::Ptr& grid,
+                                   FieldKind kind, const std::optional<double>& iso, const RunContext& ctx) {
+    const std::string named = path + ": grid \"" + grid->getName() + "\"";
+    if (kind == FieldKind::LevelSet) {
+        if (iso)
+            message(ctx, MessageLevel::Note,
+                    named + " is a level set, whose surface is known; `iso` is ignored");
+        return grid;
+    }
+    message(ctx, MessageLevel::Note,
+            named + " has no class, but its values are distances to a surface; read as a level set" +
+                (iso ? ", with the surface at `iso`" : ""));
+    if (!iso || *iso == 0) return grid;
+    openvdb::FloatGrid::Ptr field = grid->deepCopy();
+    for (auto it = field->beginValueOn(); it; ++it) it.setValue(*it - float(*iso));
+    return field;
+}
+
+GridPtr picked(const std::string& path, const std::vector<GridPtr>& grids, const VdbReadOptions& options,
+               const RunContext& ctx) {
+    std::string note;
+    GridPtr grid = pickedGrid(path, grids, options, &note);
+    if (!note.empty()) message(ctx, MessageLevel::Note, note);
+    return grid;
+}
+
 }  // namespace
 
 void validate(const VdbReadOptions& options) {
@@ -122,15 +135,10 @@ void validate(const VdbReadOptions& options) {
                   options.iso ? exactText(*options.iso) : "", "a number");
 }
 
-GridPtr pickedGrid(const std::string& path, const std::vector<GridPtr>& grids,
-                   const VdbReadOptions& options) {
-    return pickGrid(path, grids, options);
-}
-
 FloatGridPtr readVdbFloatGrid(const std::string& path, const std::string& name, const RunContext& ctx) {
     VdbReadOptions options;
     options.gridName = name;
-    const openvdb::FloatGrid::Ptr grid = asFloat(pickGrid(path, readVdbGrids(path, ctx), options));
+    const openvdb::FloatGrid::Ptr grid = asFloat(picked(path, readVdbGrids(path, ctx), options, ctx));
     refuseUnusable(path, *grid);
     return grid;
 }
@@ -144,7 +152,7 @@ LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& gri
     validate(options);
     for (const GridPtr& grid : grids)
         if (!grid) throw Error(ErrorCode::InvalidOption, path + ": one of the `grids` is null");
-    const openvdb::FloatGrid::Ptr given = asFloat(pickGrid(path, grids, options));
+    const openvdb::FloatGrid::Ptr given = asFloat(picked(path, grids, options, ctx));
     refuseUnusable(path, *given);
     // A separate name, metadata and transform; the tree is the caller's and does not change.
     openvdb::FloatGrid::Ptr grid = given->copy();
@@ -155,8 +163,8 @@ LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& gri
     if (!domainText.empty() && !model.domainRecorded)
         message(ctx, MessageLevel::Warning,
                 path + ": metadata " + kDomainKey + " \"" + domainText + "\" is not i,j,k,I,J,K; ignored");
-    const bool asFog =
-        !isLevelSet(*grid) || (options.iso && grid->getGridClass() == openvdb::GRID_FOG_VOLUME);
+    const FieldKind kind = kindOf(*grid, ctx);
+    const bool asFog = kind == FieldKind::Density;
     if (asFog && !options.iso)
         throw Error(
             ErrorCode::Unusable,
@@ -165,6 +173,14 @@ LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& gri
                 ", not a level set; set the value of its surface with `iso` VALUE (its values range from " +
                 std::to_string(rangeOf(*grid).minimum) + " to " + std::to_string(rangeOf(*grid).maximum) +
                 ")");
+    RepairedField sound{asFog ? emptyAround(path, grid, *options.iso, ctx)
+                              : atDistance(path, grid, kind, options.iso, ctx)};
+    if (!asFog) {
+        sound = repairedField(sound.field, kind, ctx);
+        for (const std::string& text : sound.said)
+            message(ctx, MessageLevel::Note, path + ": grid \"" + grid->getName() + "\": " + text);
+    }
+    grid = sound.field;
     if (!keepsDistances(*grid)) {
         const Vec3d size = fromVec(grid->voxelSize());
         const double smallest = std::min({size.x, size.y, size.z});
@@ -176,12 +192,9 @@ LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& gri
         model.domainRecorded = false;
     } else if (asFog) {
         grid = fogToLevelSet(path, *grid, *options.iso, ctx);
+    } else if (sound.measureAnew) {
+        grid = rebuildLevelSet(*grid, sound.halfWidth, path, ctx);
     }
-    const double halfWidth = halfWidthOf(*grid);
-    if (!(halfWidth >= 1.5))
-        throw Error(ErrorCode::Unusable,
-                    path + ": its band of " + std::to_string(halfWidth) +
-                        " voxels a side is under 1.5; rebuild the level set with a wider band");
     model.grid = grid;
     if (!model.domainRecorded) model.domain = solidBox(*grid, path);
     stampLevelSet(model);

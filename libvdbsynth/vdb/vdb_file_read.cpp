@@ -2,6 +2,8 @@
 #include "libvdbsynth/io/readers/gzip.h"
 #include "libvdbsynth/io/readers/whole_file.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/read/grid_names.h"
+#include "libvdbsynth/vdb/read/vdb_layout.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "libvdbsynth/vdb/wall.h"
 
@@ -9,6 +11,7 @@
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -21,18 +24,27 @@ namespace {
 
 constexpr std::uintmax_t kSmallFile = 1 << 20;
 
-// Converts OpenVDB's exceptions into BadData. A small file that requests more memory than
-// exists has a corrupt length.
+// Converts OpenVDB's exceptions into BadData, without what they quote of the file. A small file that requests
+// more memory than exists has a corrupt length.
 template <typename Work>
-void whileParsing(const std::string& path, Work&& work) {
+void whileParsing(const std::string& path, std::uint64_t size, Work&& work) {
+    const std::string damaged = path + ": truncated or corrupt";
     try {
-        behindWall(ErrorCode::BadData, path + ": truncated or corrupt", work);
+        behindWall(ErrorCode::BadData, damaged, work);
     } catch (const Error& error) {
-        std::error_code ignored;
-        if (error.code() != ErrorCode::Memory || std::filesystem::file_size(path, ignored) > kSmallFile)
-            throw;
-        throw Error(ErrorCode::BadData,
-                    path + ": truncated or corrupt: it asks for more memory than there is");
+        const std::string said = error.what();
+        if (said.compare(0, damaged.size(), damaged) != 0) throw;
+        if (error.code() == ErrorCode::Memory) {
+            if (size > kSmallFile) throw;
+            throw Error(ErrorCode::BadData, damaged + ": it asks for more memory than there is");
+        }
+        // What a stream says of its end is a phrase of the C++ library.
+        const bool ended = said.find("iostream error") != std::string::npos;
+        throw Error(error.code(),
+                    damaged + ": " +
+                        (ended ? "it ends amid its voxels"
+                               : plainText(said.substr(std::min(said.size(), damaged.size() + 2)))) +
+                        "; copy or write it again");
     }
 }
 
@@ -73,25 +85,6 @@ std::size_t openWithUnsupported(openvdb::io::File& file) {
         }
 }
 
-// Opens after checks that give better messages than OpenVDB's own. Null for a gzip file.
-std::unique_ptr<openvdb::io::File> openVdb(const std::string& path, std::size_t& unsupported) {
-    openvdb::initialize();
-    struct stat status {};
-    if (::stat(path.c_str(), &status) != 0) throw Error(ErrorCode::Io, path + ": no such file");
-    if (S_ISDIR(status.st_mode)) throw Error(ErrorCode::Io, path + ": is a directory; name a file");
-    if (!S_ISREG(status.st_mode)) throw Error(ErrorCode::Io, path + ": is not a regular file");
-    char magic[8] = {};
-    std::ifstream probe(path, std::ios::binary);
-    if (!probe) throw Error(ErrorCode::Io, path + ": cannot be read");
-    probe.read(magic, sizeof magic);
-    if (probe.gcount() == 0) throw Error(ErrorCode::BadData, path + ": the file is empty");
-    if (probe.gcount() > 2 && isGzip(std::string(magic, 3))) return nullptr;
-    if (std::string(magic, 4) != " BDV") throw Error(ErrorCode::BadData, path + ": not a VDB file");
-    auto file = std::make_unique<openvdb::io::File>(path);
-    whileParsing(path, [&] { unsupported = openWithUnsupported(*file); });
-    return file;
-}
-
 VdbMetadata textOf(const openvdb::MetaMap& map) {
     VdbMetadata metadata;
     for (auto it = map.beginMeta(); it != map.endMeta(); ++it)
@@ -99,13 +92,34 @@ VdbMetadata textOf(const openvdb::MetaMap& map) {
     return metadata;
 }
 
-VdbContents readPackedVdb(const std::string& path) {
-    const std::string content = readWholeFile(path);
-    if (content.compare(0, 4, " BDV") != 0)
-        throw Error(ErrorCode::BadData, path + ": its content is not a VDB file");
+// @throw Error that the path is no file to read
+void requireFile(const std::string& path) {
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0) throw Error(ErrorCode::Io, path + ": no such file");
+    if (S_ISDIR(status.st_mode)) throw Error(ErrorCode::Io, path + ": is a directory; name a file");
+    if (!S_ISREG(status.st_mode)) throw Error(ErrorCode::Io, path + ": is not a regular file");
+}
+
+// The beginning of a file, after checks that give better messages than OpenVDB's own.
+std::string beginningOf(const std::string& path, std::istream& file) {
+    char magic[8] = {};
+    file.read(magic, sizeof magic);
+    if (file.gcount() == 0) throw Error(ErrorCode::BadData, path + ": the file is empty");
+    return std::string(magic, std::size_t(file.gcount()));
+}
+
+bool isSupported(const VdbEntry& entry) {
+    return openvdb::GridBase::isRegistered(entry.type);
+}
+
+// All of a file whose grids are of known types, in one pass. The stream throws at its end: OpenVDB goes on
+// reading zeros, for minutes where a count is damaged.
+VdbContents readWhole(const std::string& path, std::istream& bytes, std::uint64_t size) {
     VdbContents contents;
-    whileParsing(path, [&] {
-        std::istringstream bytes(content);
+    whileParsing(path, size, [&] {
+        bytes.clear();
+        bytes.seekg(0);
+        bytes.exceptions(std::ios::failbit | std::ios::badbit);
         openvdb::io::Stream stream(bytes, /* delayLoad= */ false);
         contents.metadata = textOf(*stream.getMetadata());
         const openvdb::GridPtrVecPtr grids = stream.getGrids();
@@ -114,29 +128,58 @@ VdbContents readPackedVdb(const std::string& path) {
     return contents;
 }
 
-}  // namespace
-
-VdbContents readVdb(const std::string& path, const RunContext& ctx) {
-    Stage stage(ctx, "reading " + path, 1, /* reading= */ true);
-    std::size_t unsupported = 0;
-    const auto file = openVdb(path, unsupported);
+// Those grids of a file that are of known types, by their positions in it.
+VdbContents readSupported(const std::string& path, std::uint64_t size, const RunContext& ctx) {
     VdbContents contents;
-    if (!file) {
-        contents = readPackedVdb(path);
-        stage.advance();
-        return contents;
-    }
-    whileParsing(path, [&] {
-        contents.metadata = textOf(*file->getMetadata());
-        for (auto name = file->beginName(); name != file->endName(); ++name) try {
-                contents.grids.push_back(file->readGrid(*name));
+    whileParsing(path, size, [&] {
+        openvdb::io::File file(path);
+        const std::size_t unsupported = openWithUnsupported(file);
+        contents.metadata = textOf(*file.getMetadata());
+        for (auto name = file.beginName(); name != file.endName(); ++name) try {
+                contents.grids.push_back(file.readGrid(*name));
             } catch (const openvdb::KeyError&) {
                 // If all types are registered, a grid that is not found lies beyond the file's end.
                 if (unsupported == 0) throw Error(ErrorCode::BadData, path + ": truncated or corrupt");
                 message(ctx, MessageLevel::Warning,
-                        path + ": grid \"" + *name + "\" has a type that OpenVDB does not support; left out");
+                        path + ": grid \"" + plainText(*name) +
+                            "\" has a type that OpenVDB does not support; left out");
             }
     });
+    return contents;
+}
+
+VdbContents readUnpacked(const std::string& path, std::istream& bytes, std::uint64_t size,
+                         const RunContext& ctx) {
+    const std::vector<VdbEntry> entries = vdbLayout(path, bytes, size);
+    if (std::all_of(entries.begin(), entries.end(), isSupported)) return readWhole(path, bytes, size);
+    return readSupported(path, size, ctx);
+}
+
+}  // namespace
+
+VdbContents readVdb(const std::string& path, const RunContext& ctx) {
+    Stage stage(ctx, "reading " + path, 1, /* reading= */ true);
+    openvdb::initialize();
+    requireFile(path);
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw Error(ErrorCode::Io, path + ": cannot be read");
+    const std::string beginning = beginningOf(path, file);
+    VdbContents contents;
+    if (isGzip(beginning)) {
+        std::istringstream bytes(readWholeFile(path));
+        const std::uint64_t size = bytes.str().size();
+        if (bytes.str().compare(0, 4, " BDV") != 0)
+            throw Error(ErrorCode::BadData, path + ": its content is not a VDB file");
+        (void)vdbLayout(path, bytes, size);
+        contents = readWhole(path, bytes, size);
+    } else {
+        if (beginning.compare(0, 4, " BDV") != 0) throw Error(ErrorCode::BadData, path + ": not a VDB file");
+        file.seekg(0);
+        contents = readUnpacked(path, file, std::filesystem::file_size(path), ctx);
+    }
+    // By name, and grids of one name as the file has them.
+    std::stable_sort(contents.grids.begin(), contents.grids.end(),
+                     [](const GridPtr& a, const GridPtr& b) { return a->getName() < b->getName(); });
     stage.advance();
     return contents;
 }
@@ -149,16 +192,6 @@ std::vector<GridPtr> readVdbGrids(const std::string& path, const RunContext& ctx
     return readVdb(path, ctx).grids;
 }
 
-GridPtr readVdbGrid(const std::string& path, const std::string& name, const RunContext& ctx) {
-    std::string names;
-    for (const GridPtr& grid : readVdbGrids(path, ctx)) {
-        if (grid->getName() == name) return grid;
-        names += (names.empty() ? "" : ", ") + grid->getName();
-    }
-    throw Error(ErrorCode::BadData,
-                path + ": no grid \"" + name + "\"; it has " + (names.empty() ? "no grids" : names));
-}
-
 void requireGrids(const std::vector<GridPtr>& grids) {
     for (const GridPtr& grid : grids)
         if (!grid) throw Error(ErrorCode::InvalidOption, "`grids`: one of them is null");
@@ -167,9 +200,10 @@ void requireGrids(const std::vector<GridPtr>& grids) {
 std::vector<GridSummary> summarizeGrids(const std::vector<GridPtr>& grids) {
     requireGrids(grids);
     std::vector<GridSummary> summaries;
+    const std::vector<std::string> names = uniqueNamesOf(grids);
     for (const GridPtr& grid : grids) {
         GridSummary summary;
-        summary.name = grid->getName();
+        summary.name = names[summaries.size()];
         summary.type = grid->valueType();
         summary.gridClass = openvdb::GridBase::gridClassToString(grid->getGridClass());
         summary.voxelSize = fromVec(grid->voxelSize());

@@ -7,7 +7,6 @@
 #include "libvdbsynth/io/point_file.h"
 #include "libvdbsynth/io/raster_file.h"
 #include "libvdbsynth/raster/raster_alignment.h"
-
 #include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
 #include "tools/vdb_synth/surface_json.h"
 

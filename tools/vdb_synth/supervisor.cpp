@@ -74,7 +74,7 @@ double secondsAllowed(const std::string& path) {
     if (variable && parseReal(variable, fixed)) return fixed;
     struct stat status {};
     const double bytes = ::stat(path.c_str(), &status) == 0 ? double(status.st_size) : 0;
-    return 60 + bytes / 200e3;
+    return 20 + bytes / 200e3;
 }
 
 void removeTemporaries(const Child& child) {

@@ -1,0 +1,260 @@
+#include "libvdbsynth/vdb/read/level_set_repair.h"
+
+#include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/vdb/level_set.h"
+#include "libvdbsynth/vdb/read/band_contacts.h"
+#include "libvdbsynth/vdb/read/inactive_regions.h"
+#include "libvdbsynth/vdb/read/neighbour_pairs.h"
+
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/Prune.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace vdbsynth {
+namespace {
+
+using Leaf = openvdb::FloatTree::LeafNodeType;
+
+constexpr double kNarrowest = 1.4999;  // [voxels]
+
+// change(value, active) for all values but the background. It returns the new value and may change the state.
+template <typename Change>
+void changeValues(openvdb::FloatGrid& grid, const RunContext& ctx, const Change& change) {
+    std::vector<Leaf*> leaves;
+    grid.tree().getNodes(leaves);
+    parallelFor(ctx, leaves.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
+                bool active = leaves[i]->isValueOn(n);
+                const float value = change(leaves[i]->getValue(n), active);
+                active ? leaves[i]->setValueOn(n, value) : leaves[i]->setValueOff(n, value);
+            }
+    });
+    openvdb::FloatTree::ValueAllIter tile = grid.tree().beginValueAll();
+    tile.setMaxDepth(openvdb::FloatTree::ValueAllIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile) {
+        bool active = tile.isValueOn();
+        tile.setValue(change(*tile, active));
+        tile.setActiveState(active);
+    }
+}
+
+void setBackground(openvdb::FloatGrid& grid, float value) {
+    grid.tree().root().setBackground(value, /* updateChildNodes= */ false);
+}
+
+// Beyond half a voxel outside, where two voxels lie on two sides of a cut.
+struct Cut {
+    openvdb::Coord inside, outside;
+    int span, face;  // 0 low x, 1 high x, 2 low y ...
+};
+
+class Repair {
+public:
+    Repair(const FloatGridPtr& grid, FieldKind kind, const RunContext& ctx)
+        : mKind(kind), mContext(ctx), mFit(distanceFitOf(*grid, ctx)), mSize(grid->voxelSize()) {
+        mResult.field = grid;
+        mResult.halfWidth = kHalfWidth;
+        mUniform = std::abs(mSize[0] - mSize[1]) <= 1e-6 * mSize[0] &&
+                   std::abs(mSize[0] - mSize[2]) <= 1e-6 * mSize[0];
+    }
+
+    RepairedField run() {
+        repairUnit();
+        BandContacts contacts = bandContactsOf(field(), 1.5 * mUnit, mContext);
+        if (contacts.jumps > 0 || field().background() <= 0) {
+            repairSigns(contacts);
+            if (!mResult.measureAnew) contacts = bandContactsOf(field(), 1.5 * mUnit, mContext);
+        }
+        if (!mResult.measureAnew && mUniform) repairBand(contacts);
+        return mResult;
+    }
+
+private:
+    const openvdb::FloatGrid& field() const { return *mResult.field; }
+
+    // A copy at the first change.
+    openvdb::FloatGrid& changing() {
+        if (!mCopied) mResult.field = mResult.field->deepCopy();
+        mCopied = true;
+        return *mResult.field;
+    }
+
+    void say(const std::string& text) { mResult.said.push_back(text); }
+
+    // Distances in voxels become those in world units; where they are neither, only the zero level counts.
+    void repairUnit() {
+        const double voxel = std::max({mSize[0], mSize[1], mSize[2]});
+        if (mFit.inVoxels() && mUniform) {
+            const float scale = float(voxel);
+            changeValues(changing(), mContext, [scale](float value, bool&) { return value * scale; });
+            setBackground(changing(), field().background() * scale);
+            say("its distances are in voxels, taken times the voxel size");
+        }
+        const bool fits = mFit.measured == 0 || mFit.inWorldUnits() || mFit.inVoxels();
+        if (!fits && (mFit.slope < 0.6 || mFit.slope > 1.6)) {
+            say("its values grow by " + roundedText(mFit.slope, 3) +
+                " per unit away from the surface, so they are no distances; measured anew");
+            mResult.measureAnew = true;
+        }
+        mUnit = voxel * (fits || !(mFit.slope > 0) ? 1 : mFit.slope);
+    }
+
+    void turn() {
+        changeValues(changing(), mContext, [](float value, bool&) { return 0 - value; });
+        setBackground(changing(), 0 - field().background());
+        say("its signs are turned (positive inside); turned back");
+    }
+
+    void repairSigns(const BandContacts& contacts) {
+        const bool believed = field().background() != 0;
+        const InactiveRegions regions(field().tree(), believed, mContext);
+        const InactiveRegions::Votes out = regions.outside();
+        const double share = double(out.negative) / std::max(1.0, double(out.negative + out.positive));
+        const std::size_t agreeing = contacts.inside.voxels + contacts.outside.voxels;
+        mTurned = field().background() > 0 ? share >= 0.97 && 2 * contacts.jumps >= agreeing
+                                           : share >= 0.97 || (believed && share > 0.5);
+        if (mTurned) turn();
+        if (!(field().background() > 0) || double(field().background()) > 1000 * mUnit) {
+            say("its background of " + roundedText(double(field().background()), 4) +
+                " is no distance; what lies beyond its voxels is outside");
+            mResult.measureAnew = true;
+        }
+        writeSigns(regions, believed && field().background() > 0);
+        closeCuts();
+        if (regions.minorities() > 0)
+            say("its band has gaps, where inside and outside are guessed from the voxels around");
+    }
+
+    // Which sign each region has by the voxels around it.
+    bool isInside(const InactiveRegions& regions, int region, bool stored) const {
+        if (regions.isOutside(region)) return false;
+        InactiveRegions::Votes votes = regions.votes(region);
+        if (mTurned) std::swap(votes.negative, votes.positive);
+        return votes.negative == votes.positive ? stored : votes.negative > votes.positive;
+    }
+
+    void writeSigns(const InactiveRegions& regions, bool believed) {
+        const float width = mResult.measureAnew ? float(double(kHalfWidth) * mUnit) : field().background();
+        std::uint64_t filled = 0, emptied = 0;
+        openvdb::FloatGrid& grid = changing();
+        const openvdb::tree::ValueAccessor<const openvdb::Int32Tree> labels(regions.labels());
+        for (auto it = grid.tree().beginValueOff(); it; ++it) {
+            const bool stored = believed && *it < 0;
+            const bool inside = isInside(regions, regions.find(labels.getValue(it.getCoord())), stored);
+            const std::uint64_t voxels = it.getVoxelCount();
+            if (inside && !(*it < 0)) filled += voxels;
+            if (!inside && stored) emptied += voxels;
+            // The widths of a sound band stay, which may be two.
+            const bool keeps = !mResult.measureAnew && (*it < 0) == inside && *it != 0;
+            if (!keeps) it.setValue(inside ? -width : width);
+        }
+        setBackground(grid, width);
+        if (filled > 0 && believed)
+            say("its inside was marked as outside; filled from the signs of its band");
+        if (emptied > 0) say("voxels outside were marked as inside; emptied by the signs of its band");
+    }
+
+    // Where the inside ends in a step, it was cut: the surface is the plane between the voxels.
+    void closeCuts() {
+        std::vector<Cut> cuts;
+        double voxels = 0;
+        const auto take = [&](const VoxelPair& pair) {
+            const bool insideA = pair.valueA < 0;
+            if (insideA == (pair.valueB < 0) || (insideA ? pair.activeB : pair.activeA)) return;
+            if (std::abs(pair.valueA - pair.valueB) <= 1.5 * mUnit) return;
+            int face = 0;
+            for (int axis = 0; axis < 3; ++axis)
+                if (pair.a[axis] != pair.b[axis])
+                    face = 2 * axis + ((pair.b[axis] > pair.a[axis]) == insideA ? 1 : 0);
+            cuts.push_back(insideA ? Cut{pair.a, pair.b, pair.span, face}
+                                   : Cut{pair.b, pair.a, pair.span, face});
+            voxels += double(pair.span) * double(pair.span);
+        };
+        const openvdb::FloatGrid::ConstAccessor accessor = field().getConstAccessor();
+        for (auto leaf = field().tree().cbeginLeaf(); leaf; ++leaf) forEachPairOfLeaf(*leaf, accessor, take);
+        forEachPairOfTiles(field().tree(), take);
+        if (cuts.empty()) return;
+        requireMemory(mContext, voxels * 80, "closing a level set that is cut open", "use larger voxels");
+        for (const Cut& cut : cuts) close(cut);
+        sayCuts(cuts);
+        const double present = double(field().background()) / mUnit;
+        if (!mResult.measureAnew && present >= kNarrowest && present <= 100)
+            mResult.halfWidth = float(present);
+        mResult.measureAnew = true;
+    }
+
+    void close(const Cut& cut) {
+        openvdb::FloatGrid::Accessor accessor = changing().getAccessor();
+        const int axis = cut.face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+        const float half = float(mUnit / 2);
+        for (int i = 0; i < cut.span; ++i)
+            for (int j = 0; j < cut.span; ++j) {
+                openvdb::Coord inside = cut.inside, outside = cut.outside;
+                inside[u] += i, outside[u] += i;
+                inside[v] += j, outside[v] += j;
+                accessor.setValue(inside, std::max(accessor.getValue(inside), -half));
+                accessor.setValue(outside, half);
+            }
+    }
+
+    void sayCuts(const std::vector<Cut>& cuts) {
+        static constexpr std::array<const char*, 6> kFaces{"low x",  "high x", "low y",
+                                                           "high y", "low z",  "high z"};
+        std::array<bool, 6> at{};
+        for (const Cut& cut : cuts) at[std::size_t(cut.face)] = true;
+        std::string names;
+        for (std::size_t face = 0; face < 6; ++face)
+            if (at[face]) names += std::string(names.empty() ? "" : ", ") + kFaces[face];
+        say("its solid is cut open at " + names + "; closed flat there");
+    }
+
+    void repairBand(const BandContacts& contacts) {
+        const double width = double(field().background()), voxels = width / mUnit;
+        const ValueRange range = rangeOf(field());
+        const auto narrower = [](const BandSide& side) {
+            return side.early >= 8 && double(side.early) > 0.05 * double(side.voxels);
+        };
+        if (voxels < kNarrowest) {
+            say("its band of " + roundedText(voxels, 3) +
+                " voxels a side is under 1.5; measured anew with 3");
+            mResult.measureAnew = true;
+        } else if (narrower(contacts.outside) || narrower(contacts.inside)) {
+            say("its background says a band of " + roundedText(voxels, 3) +
+                " voxels a side, its distances end earlier; measured anew with 3");
+            mResult.measureAnew = true;
+        } else if (std::min(range.minimum, contacts.deepest) < -1.001 * width ||
+                   std::max(range.maximum, contacts.farthest) > 1.001 * width) {
+            trim(float(width));
+            say("its band is wider on one side; cut to " + roundedText(voxels, 3) + " voxels on both");
+        }
+    }
+
+    void trim(float width) {
+        changeValues(changing(), mContext, [width](float value, bool& active) {
+            active = active && value > -width && value < width;
+            return active ? value : value < 0 ? -width : width;
+        });
+        openvdb::tools::pruneLevelSet(changing().tree());
+    }
+
+    const FieldKind mKind;
+    const RunContext& mContext;
+    const DistanceFit mFit;
+    const openvdb::Vec3d mSize;
+    bool mUniform = true, mCopied = false, mTurned = false;
+    double mUnit = 1;  // what a voxel is in the field's values
+    RepairedField mResult;
+};
+
+}  // namespace
+
+RepairedField repairedField(const FloatGridPtr& grid, FieldKind kind, const RunContext& ctx) {
+    return Repair(grid, kind, ctx).run();
+}
+
+}  // namespace vdbsynth

@@ -118,7 +118,7 @@ LevelSet atVoxelSize(const std::string& path, const LevelSet& model, const Model
     if (std::abs(wanted - present) <= 1e-6 * present) return model;
     message(ctx, MessageLevel::Note,
             path + ": resampled from voxels of " + roundedText(present, 6) + " to " + roundedText(wanted, 6));
-    return resampled(model, wanted, ctx);
+    return resampled(model, wanted, ctx, path);
 }
 
 // Voxels of the field's directions and origin; a rotation stays in the transform, so nothing is resampled.

@@ -16,6 +16,8 @@ struct RasterField {
     double voxelSize = 1;                    ///< [world]
     Vec3d origin{0, 0, 0};                   ///< [world] of voxel 0,0,0
     std::array<Vec3d, 3> axes = kWorldAxes;  ///< unit directions of the voxels, at right angles
+    /// Share of an image's pixels whose heights lie farther than a voxel from the surface.
+    double lostShare = 0;
     std::string description;                 ///< the choices made, one line
 };
 

@@ -139,7 +139,7 @@ class Solids(Reported):
         done = self.convert(self.mesh(cube(0, 20), box((40, 5, 5.3), (60, 15, 5.5))), resolution=60)
         self.assertEqual(done.code, 0)
         self.said(done, "1 of 2 closed parts", "its bounds shrink", "--resolution")
-        small = self.convert(self.mesh(cube(0, 20), cube(9.8, 10, True)), resolution=40)
+        small = self.convert(self.mesh(cube(0, 20), cube(9.65, 9.85, True)), resolution=40)
         self.assertEqual(small.code, 0)
         self.said(small, "1 of 1 void")
 

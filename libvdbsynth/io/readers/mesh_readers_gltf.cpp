@@ -109,6 +109,7 @@ private:
             if (!wanted || !decode(primitive, weights, read)) continue;
             // Joints alone say where it is.
             const bool posed = skin >= 0 && pose(primitive, skin, read);
+            if (mPointsOnly) keepListed(read);
             requireRoom(read, posed ? 1 : places.size());
             if (posed)
                 append(read, kIdentity);

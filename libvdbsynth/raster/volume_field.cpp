@@ -183,7 +183,10 @@ RasterField volumeField(const std::string& name, const Raster& given, const Volu
         result.field =
             labelField(name, raster, range, chooseLabels(name, range, options, result.description), ctx);
     }
-    placeField(name, raster, options.pixelSize, result, ctx);
+    const double smallest = std::min({raster.spacing.x, raster.spacing.y, raster.spacing.z});
+    const Vec3d cell =
+        options.pixelSize > 0 ? raster.spacing * (options.pixelSize / smallest) : raster.spacing;
+    placeField(name, raster, cell, /* inPlace= */ !(options.pixelSize > 0), result, ctx);
     stage.advance();
     return result;
 }

@@ -43,7 +43,7 @@ Header parseHeader(const std::string& path, const std::string& text) {
     if (descr.size() < 5 || (descr[0] != '\'' && descr[0] != '"'))
         throw Error(
             ErrorCode::BadData,
-            path + ": holds records (a structured type); save one of their fields as an array of its own");
+            path + ": holds records (a structured array); save one of their fields as an array of its own");
     const std::size_t end = descr.find(descr[0], 1);
     const std::string code = descr.substr(1, end == std::string::npos ? 0 : end - 1);
     header.swap = !code.empty() && code[0] == '>';

@@ -183,13 +183,8 @@ RasterField volumeField(const std::string& name, const Raster& given, const Volu
         result.field =
             labelField(name, raster, range, chooseLabels(name, range, options, result.description), ctx);
     }
-    Raster place;
-    place.size = raster.size;
-    place.axes = raster.axes;
-    place.spacing = cell;
-    const bool ownOrigin = options.pixelSize <= 0 && options.pixelSides.x <= 0;
-    if (ownOrigin) place.origin = raster.origin;
-    placeField(name, place, result, ctx);
+    const bool inPlace = options.pixelSize <= 0 && options.pixelSides.x <= 0;
+    placeField(name, raster, cell, inPlace, result, ctx);
     stage.advance();
     return result;
 }

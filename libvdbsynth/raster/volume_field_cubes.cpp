@@ -75,11 +75,12 @@ void resampleBoxes(const std::string& name, const Raster& raster, const Vec3d& r
 // distance to the block of cells.
 class ShearedSamples {
 public:
-    ShearedSamples(const Raster& raster, const std::array<Vec3d, 3>& frame, double smallest)
+    ShearedSamples(const Raster& raster, const std::array<Vec3d, 3>& frame, const Vec3d& cell)
         : mSize(raster.size) {
+        const double smallest = std::min({cell.x, cell.y, cell.z});
         for (int i = 0; i < 3; ++i) {
             const std::size_t n = std::size_t(i);
-            const Vec3d step = raster.axes[n] * (raster.spacing[i] / smallest);
+            const Vec3d step = raster.axes[n] * (cell[i] / smallest);
             mSteps[n] = {dot(frame[0], step), dot(frame[1], step), dot(frame[2], step)};
         }
         const double volume = dot(mSteps[0], cross(mSteps[1], mSteps[2]));
@@ -118,14 +119,14 @@ private:
     double mHeights[3] = {};        // [voxels] between layers of samples
 };
 
-void resampleSheared(const std::string& name, const Raster& raster, double smallest, RasterField& result,
+void resampleSheared(const std::string& name, const Raster& raster, const Vec3d& cell, RasterField& result,
                      const RunContext& ctx) {
     const std::array<Vec3d, 3> frame = nearestFrame(raster.axes);
-    const ShearedSamples samples(raster, frame, smallest);
+    const ShearedSamples samples(raster, frame, cell);
     Vec3d low, high;
     samples.box(low, high);
     const double sides[3] = {high.x - low.x + 1, high.y - low.y + 1, high.z - low.z + 1};
-    requireSides(name, sides, std::max({raster.spacing.x, raster.spacing.y, raster.spacing.z}) / smallest);
+    requireSides(name, sides, std::max({cell.x, cell.y, cell.z}) / result.voxelSize);
     for (int axis = 0; axis < 3; ++axis) {
         result.domain.min[axis] = int(std::floor(low[axis]));
         result.domain.max[axis] = int(std::ceil(high[axis]));
@@ -141,17 +142,18 @@ void resampleSheared(const std::string& name, const Raster& raster, double small
 
 }  // namespace
 
-void placeField(const std::string& name, const Raster& raster, RasterField& result, const RunContext& ctx) {
-    const double smallest = std::min({raster.spacing.x, raster.spacing.y, raster.spacing.z});
+void placeField(const std::string& name, const Raster& raster, const Vec3d& cell, bool inPlace,
+                RasterField& result, const RunContext& ctx) {
+    const double smallest = std::min({cell.x, cell.y, cell.z});
     result.voxelSize = smallest;
-    result.origin = raster.origin;
+    result.origin = inPlace ? raster.origin : Vec3d{0, 0, 0};
     result.domain = IndexBox::fromSize(raster.size);
     result.axes = raster.axes;
     if (turnOf(raster.axes).shear > 1e-9) {
-        resampleSheared(name, raster, smallest, result, ctx);
+        resampleSheared(name, raster, cell, result, ctx);
         return;
     }
-    const Vec3d ratio{smallest / raster.spacing.x, smallest / raster.spacing.y, smallest / raster.spacing.z};
+    const Vec3d ratio{smallest / cell.x, smallest / cell.y, smallest / cell.z};
     if (std::min({ratio.x, ratio.y, ratio.z}) < 1 - 1e-6) resampleBoxes(name, raster, ratio, result, ctx);
 }
 

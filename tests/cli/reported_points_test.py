@@ -278,7 +278,7 @@ class Arrays(PointsCase):
         self.ok("convert", "v.npy", "-o", "v.vdb", "--as", "volume", "--threshold", 3)
         record = "[('x', '<f4'), ('y', '<f4'), ('z', '<f4')]"
         self.write("r.npy", self.npy(record, "(400,)", bytes(4800)))
-        self.refused(3, "structured type", "r.npy")
+        self.refused(3, "structured array", "r.npy")
 
 
 if __name__ == "__main__":

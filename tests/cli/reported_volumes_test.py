@@ -253,7 +253,7 @@ class ArrayFiles(Volumes):
     def test_refusals(self):
         self.fails(3, "type 'c8'", "convert", self.write("c.npy", npy((2, 2, 2), bytes(64), "<c8")), "-o", "o.ply")
         records = npy((8, 8, 8), bytes(4096)).replace(b"'|u1'", b"[('a', '<f4')]", 1)
-        self.fails(3, "structured type", "convert", self.write("r.npy", records), "-o", "o.ply")
+        self.fails(3, "structured array", "convert", self.write("r.npy", records), "-o", "o.ply")
 
     def test_a_name_for_a_file_of_one_array(self):
         path = self.write("b.npy", npy((12, 12, 12), ball((12, 12, 12), (5, 5, 5), 4)))

@@ -113,10 +113,7 @@ void ObjReader::readLine() {
 bool ObjReader::readCoordinate(double& value) {
     const std::string_view word = mScanner.wordOnLine();
     if (word.empty()) mScanner.fail("a vertex has fewer than three coordinates");
-    const std::size_t end = mScanner.position();
-    if (word.back() == '.' && isOneOf(mText.substr(end, 2), {"#Q", "#I", "#S", "#N"}))
-        return false;  // 1.#QNAN
-    if (parseAnyReal(word, value)) return true;
+    if (parseForeignReal(word, value)) return true;
     if (word.find(',') != std::string_view::npos)
         mScanner.fail(
             "a comma in a coordinate; OBJ files have decimal points, and blanks between numbers: export "

@@ -38,7 +38,7 @@ NpyHeader parseHeader(const std::string& path, const std::string& text) {
         throw Error(
             ErrorCode::BadData,
             path +
-                ": holds records (a structured type); save one of their fields as an array of its own, or "
+                ": holds records (a structured array); save one of their fields as an array of its own, or "
                 "points with fields x, y, z as one array of three columns, for example with "
                 "numpy.lib.recfunctions.structured_to_unstructured");
     const std::size_t end = descr.find(descr[0], 1);

@@ -115,5 +115,5 @@ TEST_CASE("readNpy: what is not read is refused by name, without bytes of the fi
     refused(test::npy("|O\x01", "(1, 1)", std::string(16, '\0')), "type 'O?'");
     std::string records = test::npy("<f4", "(1, 1)", "abcd");
     records.replace(records.find("'<f4'"), 5, "[('x'");
-    refused(records, "structured type");
+    refused(records, "structured array");
 }

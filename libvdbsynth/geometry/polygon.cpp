@@ -11,6 +11,8 @@ namespace {
 
 // Of a quad's area: a corner that dents it by less counts as straight.
 constexpr double kStraight = 1e-6;
+// The cosine of normals from which on two triangles lie on each other.
+constexpr double kOpposite = -0.999;
 // Of the squared length: a smaller area is rounding.
 constexpr double kNoArea = 1e-12;
 
@@ -87,7 +89,11 @@ bool PolygonCutter::addQuad(const std::uint32_t* q) {
         mMesh.triangles.push_back({q[0], q[1], q[3]});
         mMesh.triangles.push_back({q[1], q[2], q[3]});
     }
-    return first || second;
+    // Twisted quads fail as well; in those that cross themselves the triangles are flat on each other.
+    const auto opposite = [&](const Vec3d& a, const Vec3d& b) {
+        return dot(a, b) < kOpposite * length(a) * length(b);
+    };
+    return first || second || !opposite(normal[1], normal[3]) || !opposite(normal[0], normal[2]);
 }
 
 // From the least areas of all shorter chains of corners; of equal ones the first.

@@ -129,6 +129,8 @@ TEST_CASE("appendPolygons: straight and repeated corners and saddles stay quads"
                                          {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 0}},
                                          {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {1, 0, 0}},
                                          {{0, 0, 0}, {1, 0, 0.5}, {1, 1, 0}, {0, 1, 0.5}},
+                                         {{0, 0, 0}, {1, 0, 2}, {1, 1, 0}, {0, 1, 2}},
+                                         {{0, 0, 0}, {1, 0, 0}, {1, 1, 6}, {0, 1, 2}},
                                          {{3e38, 0, 0}, {3e38, 3e38, 0}, {-3e38, 3e38, 0}, {-3e38, 0, 0}}}) {
         const Cut cut = cutOf(quad);
         CHECK(cut.mesh.quads == std::vector<Quad>{{0, 1, 2, 3}});

@@ -56,11 +56,10 @@ void sayFaces(const std::string& path, const PolygonList& polygons, std::size_t 
         message(ctx, MessageLevel::Note,
                 path + ": " + std::to_string(small) + " faces with fewer than three corners left out");
     if (crossing > 0)
-        message(
-            ctx, MessageLevel::Warning,
-            path + ": " + std::to_string(crossing) + " of " + std::to_string(polygons.sizes.size()) +
-                " faces cross themselves or are far from flat; their triangles overlap. Triangulating the "
-                "mesh in the program that wrote it helps");
+        message(ctx, MessageLevel::Warning,
+                path + ": " + std::to_string(crossing) + " of " + std::to_string(polygons.sizes.size()) +
+                    " faces cross themselves or are far from flat; their triangles may overlap. "
+                    "Triangulating the mesh in the program that wrote it helps");
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ private:
     void readVertex();
     void readTexture();
     void readFace();
-    bool readCoordinate(double& value);
+    double readCoordinate();
     std::int64_t indexOf(std::string_view digits);
     std::uint32_t pointOf(std::int64_t index);
     std::int32_t textureOf(std::int64_t index) const;
@@ -108,12 +108,11 @@ void ObjReader::readLine() {
         ++mLeftOut.unknown;
 }
 
-// Returns false where the number is one that C libraries of Windows write for no number: then the rest of the
-// line reads as a comment.
-bool ObjReader::readCoordinate(double& value) {
+double ObjReader::readCoordinate() {
+    double value = 0;
     const std::string_view word = mScanner.wordOnLine();
     if (word.empty()) mScanner.fail("a vertex has fewer than three coordinates");
-    if (parseForeignReal(word, value)) return true;
+    if (parseForeignReal(word, value)) return value;
     if (word.find(',') != std::string_view::npos)
         mScanner.fail(
             "a comma in a coordinate; OBJ files have decimal points, and blanks between numbers: export "
@@ -125,9 +124,7 @@ bool ObjReader::readCoordinate(double& value) {
 void ObjReader::readVertex() {
     const std::size_t place = mScanner.position();
     Vec3d p;
-    bool whole = true;
-    for (int axis = 0; axis < 3 && whole; ++axis) whole = readCoordinate(p[axis]);
-    if (!whole) p.x = std::numeric_limits<double>::quiet_NaN();
+    for (int axis = 0; axis < 3; ++axis) p[axis] = readCoordinate();
     for (int axis = 0; axis < 3; ++axis)
         if (!(std::abs(p[axis]) <= double(FLT_MAX)))
             mUnfinite.emplace_hint(mUnfinite.end(), std::uint32_t(mMesh.points.size()), place);

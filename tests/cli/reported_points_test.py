@@ -200,8 +200,7 @@ class Outliers(PointsCase):
         for name, far in (("a", "1e30 0 0 1 0 0\n"), ("c", "0 1e38 0 1 0 0\n"),
                           ("e", "1e30 0 0 1 0 0\n1e30 1e24 0 1 0 0\n0 0 1e20 0 0 1\n"),
                           ("g", "1e300 0 0 1 0 0\n-1e300 0 0 1 0 0\n")):
-            done = self.run_tool("convert", self.write(name + ".xyz", kitten + far), "-o", name + ".ply", "--resolution", 80,
-                                 timeout=60)
+            done = self.run_tool("convert", self.write(name + ".xyz", kitten + far), "-o", name + ".ply", "--resolution", 80)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn("%d outliers of %d points left out" % (far.count("\n"), kitten.count("\n") + far.count("\n")),
                           done.stderr)

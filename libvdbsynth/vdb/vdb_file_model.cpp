@@ -100,7 +100,9 @@ openvdb::FloatGrid::Ptr emptyAround(const std::string& path, const openvdb::Floa
                 roundedText(double(fog->background()), 4) +
                 " would be solid; what lies beyond its voxels is taken as outside");
     openvdb::FloatGrid::Ptr field = fog->deepCopy();
-    openvdb::tools::changeBackground(field->tree(), float(range.minimum));
+    for (auto it = field->beginValueOff(); it; ++it)
+        if (*it == fog->background()) it.setValue(float(range.minimum));
+    field->tree().root().setBackground(float(range.minimum), /* updateChildNodes= */ false);
     return field;
 }
 
@@ -182,7 +184,7 @@ LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& gri
     RepairedField sound{asFog ? emptyAround(path, grid, *options.iso, ctx)
                               : atDistance(path, grid, kind, options.iso, ctx)};
     if (!asFog) {
-        sound = repairedField(sound.field, kind, ctx);
+        sound = repairedField(sound.field, ctx);
         for (const std::string& text : sound.said)
             message(ctx, MessageLevel::Note, path + ": grid \"" + grid->getName() + "\": " + text);
     }

@@ -1,6 +1,8 @@
 #include "libvdbsynth/vdb/read/field_kind.h"
 
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/math/lattice.h"
+#include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/level_set.h"
 
 #include <openvdb/openvdb.h>
@@ -86,16 +88,60 @@ DistanceFit distanceFitOf(const openvdb::FloatGrid& grid, const RunContext& ctx)
     const auto middle = world.begin() + std::ptrdiff_t(world.size() / 2);
     std::nth_element(world.begin(), middle, world.end());
     fit.slope = *middle;
+    const auto uniform = std::count_if(world.begin(), world.end(), [&](double slope) {
+        return std::abs(slope - fit.slope) <= 0.1 * fit.slope;
+    });
+    fit.uniformShare = double(uniform) / double(world.size());
     return fit;
 }
+
+FloatGridPtr withSurfaceVoxels(const openvdb::FloatGrid& grid) {
+    if (grid.background() != 0) return nullptr;
+    std::vector<openvdb::Coord> found;
+    const openvdb::FloatGrid::ConstAccessor accessor = grid.getConstAccessor();
+    for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
+        for (auto it = leaf->cbeginValueOff(); it; ++it) {
+            if (*it != 0) continue;
+            bool negative = false, positive = false;
+            for (const Index3& step : kAllNeighbours) {
+                float value = 0;
+                if (!accessor.probeValue(it.getCoord() + toCoord(step), value)) continue;
+                negative = negative || value < 0;
+                positive = positive || value > 0;
+            }
+            if (negative && positive) found.push_back(it.getCoord());
+        }
+    if (found.empty()) return nullptr;
+    const FloatGridPtr copy = grid.deepCopy();
+    for (const openvdb::Coord& at : found) copy->tree().setValueOn(at, 0.f);
+    return copy;
+}
+
+namespace {
+
+// Most voxels lie at one of two opposite ends, as truncated distances do.
+bool isClamped(const openvdb::FloatGrid& grid, const ValueRange& range) {
+    if (std::abs(range.minimum + range.maximum) > 1e-3 * range.maximum) return false;
+    const float end = float(0.999 * range.maximum);
+    std::uint64_t ends = 0, all = 0;
+    for (auto it = grid.cbeginValueOn(); it; ++it) {
+        all += it.getVoxelCount();
+        if (std::abs(*it) >= end) ends += it.getVoxelCount();
+    }
+    return ends > all / 3;
+}
+
+}  // namespace
 
 FieldKind kindOf(const openvdb::FloatGrid& grid, const RunContext& ctx) {
     if (grid.getGridClass() == openvdb::GRID_LEVEL_SET) return FieldKind::LevelSet;
     if (grid.getGridClass() != openvdb::GRID_UNKNOWN) return FieldKind::Density;
     const ValueRange range = rangeOf(grid);
     if (!range.finite || range.minimum >= 0 || range.maximum <= 0) return FieldKind::Density;
-    const DistanceFit fit = distanceFitOf(grid, ctx);
-    if (fit.inWorldUnits() || fit.inVoxels()) return FieldKind::Distances;
+    const FloatGridPtr whole = withSurfaceVoxels(grid);
+    const DistanceFit fit = distanceFitOf(whole ? *whole : grid, ctx);
+    if (fit.inWorldUnits() || fit.inVoxels() || (fit.uniformShare >= 0.6 && isClamped(grid, range)))
+        return FieldKind::Distances;
     // A band so narrow that no voxel has all its neighbours: by its form.
     const double background = std::abs(double(grid.background()));
     const bool thin = fit.measured < kFewest && background > 0 && range.maximum <= background * 1.001 &&

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace vdbsynth {
 namespace {
@@ -32,6 +33,7 @@ InactiveRegions::InactiveRegions(const openvdb::FloatTree& tree, bool bySign, co
             return;
         }
         const float value = pair.activeA ? pair.valueA : pair.valueB;
+        if (std::isinf(value)) return;
         Votes& votes = mVotes[std::size_t(pair.activeA ? b : a)];
         (value < 0 ? votes.negative : votes.positive) += std::uint64_t(pair.span) * std::uint64_t(pair.span);
     };

@@ -9,7 +9,7 @@
 namespace vdbsynth {
 
 /// The connected regions of a tree's inactive voxels, and the signs of the active voxels around each: what a
-/// region's own values should have been.
+/// region's own values should have been. Active voxels of infinite value are a fence without a sign.
 /// @par Cost     memory as the tree's, some microseconds per leaf
 /// @par Repeats  same bits for any number of threads
 class InactiveRegions {

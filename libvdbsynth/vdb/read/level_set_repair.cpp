@@ -4,6 +4,7 @@
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/vdb/level_set.h"
 #include "libvdbsynth/vdb/read/band_contacts.h"
+#include "libvdbsynth/vdb/read/field_kind.h"
 #include "libvdbsynth/vdb/read/inactive_regions.h"
 #include "libvdbsynth/vdb/read/neighbour_pairs.h"
 
@@ -13,6 +14,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
 
 namespace vdbsynth {
 namespace {
@@ -47,7 +51,7 @@ void setBackground(openvdb::FloatGrid& grid, float value) {
     grid.tree().root().setBackground(value, /* updateChildNodes= */ false);
 }
 
-// Beyond half a voxel outside, where two voxels lie on two sides of a cut.
+// Two voxels, or squares of them, on two sides of a cut.
 struct Cut {
     openvdb::Coord inside, outside;
     int span, face;  // 0 low x, 1 high x, 2 low y ...
@@ -55,9 +59,13 @@ struct Cut {
 
 class Repair {
 public:
-    Repair(const FloatGridPtr& grid, FieldKind kind, const RunContext& ctx)
-        : mKind(kind), mContext(ctx), mFit(distanceFitOf(*grid, ctx)), mSize(grid->voxelSize()) {
+    Repair(const FloatGridPtr& grid, const RunContext& ctx) : mContext(ctx), mSize(grid->voxelSize()) {
         mResult.field = grid;
+        if (const FloatGridPtr whole = withSurfaceVoxels(*grid)) {
+            mResult.field = whole;
+            mCopied = true;
+        }
+        mFit = distanceFitOf(field(), ctx);
         mResult.halfWidth = kHalfWidth;
         mUniform = std::abs(mSize[0] - mSize[1]) <= 1e-6 * mSize[0] &&
                    std::abs(mSize[0] - mSize[2]) <= 1e-6 * mSize[0];
@@ -112,22 +120,53 @@ private:
 
     void repairSigns(const BandContacts& contacts) {
         const bool believed = field().background() != 0;
-        const InactiveRegions regions(field().tree(), believed, mContext);
-        const InactiveRegions::Votes out = regions.outside();
+        auto regions = std::make_unique<InactiveRegions>(field().tree(), believed, mContext);
+        InactiveRegions::Votes out = regions->outside();
         const double share = double(out.negative) / std::max(1.0, double(out.negative + out.positive));
         const std::size_t agreeing = contacts.inside.voxels + contacts.outside.voxels;
         mTurned = field().background() > 0 ? share >= 0.97 && 2 * contacts.jumps >= agreeing
                                            : share >= 0.97 || (believed && share > 0.5);
-        if (mTurned) turn();
+        if (mTurned) {
+            turn();
+            std::swap(out.negative, out.positive);
+        }
         if (!(field().background() > 0) || double(field().background()) > 1000 * mUnit) {
             say("its background of " + roundedText(double(field().background()), 4) +
                 " is no distance; what lies beyond its voxels is outside");
             mResult.measureAnew = true;
         }
-        writeSigns(regions, believed && field().background() > 0);
+        const bool known = believed && field().background() > 0;
+        // The outside touches the inside: a cut may have opened it, so regions end where the voxels end.
+        if (double(out.negative) > 0.005 * double(out.negative + out.positive)) {
+            fence(known);
+            regions = std::make_unique<InactiveRegions>(field().tree(), known, mContext);
+            mTurned = false;
+        }
+        const std::uint64_t mixed = regions->minorities();
+        writeSigns(*regions, known);
         closeCuts();
-        if (regions.minorities() > 0)
+        if (double(mixed) > 0.01 * double(agreeing + contacts.jumps))
             say("its band has gaps, where inside and outside are guessed from the voxels around");
+    }
+
+    // A fence around all active voxels, and around the inactive inside where that is known.
+    void fence(bool known) {
+        openvdb::CoordBBox box = field().evalActiveVoxelBoundingBox();
+        if (known)
+            for (auto it = field().cbeginValueOff(); it; ++it)
+                if (*it < 0) box.expand(it.getBoundingBox());
+        box.expand(1);
+        const openvdb::Coord size = box.dim();
+        requireMemory(
+            mContext,
+            200 * (double(size[0]) * size[1] + double(size[1]) * size[2] + double(size[2]) * size[0]),
+            "closing a level set that is cut open", "use larger voxels");
+        for (int face = 0; face < 6; ++face) {
+            openvdb::CoordBBox side = box;
+            (face % 2 ? side.min() : side.max())[face / 2] = (face % 2 ? box.max() : box.min())[face / 2];
+            mFence.push_back(side);
+            changing().sparseFill(side, std::numeric_limits<float>::infinity(), /* active= */ true);
+        }
     }
 
     // Which sign each region has by the voxels around it.
@@ -153,6 +192,7 @@ private:
             const bool keeps = !mResult.measureAnew && (*it < 0) == inside && *it != 0;
             if (!keeps) it.setValue(inside ? -width : width);
         }
+        for (const openvdb::CoordBBox& side : mFence) grid.sparseFill(side, width, /* active= */ false);
         setBackground(grid, width);
         if (filled > 0 && believed)
             say("its inside was marked as outside; filled from the signs of its band");
@@ -230,7 +270,8 @@ private:
         } else if (std::min(range.minimum, contacts.deepest) < -1.001 * width ||
                    std::max(range.maximum, contacts.farthest) > 1.001 * width) {
             trim(float(width));
-            say("its band is wider on one side; cut to " + roundedText(voxels, 3) + " voxels on both");
+            say("its distances go on beyond its background; cut to " + roundedText(voxels, 3) +
+                " voxels on both sides");
         }
     }
 
@@ -242,19 +283,19 @@ private:
         openvdb::tools::pruneLevelSet(changing().tree());
     }
 
-    const FieldKind mKind;
     const RunContext& mContext;
-    const DistanceFit mFit;
+    DistanceFit mFit;
     const openvdb::Vec3d mSize;
     bool mUniform = true, mCopied = false, mTurned = false;
+    std::vector<openvdb::CoordBBox> mFence;
     double mUnit = 1;  // what a voxel is in the field's values
     RepairedField mResult;
 };
 
 }  // namespace
 
-RepairedField repairedField(const FloatGridPtr& grid, FieldKind kind, const RunContext& ctx) {
-    return Repair(grid, kind, ctx).run();
+RepairedField repairedField(const FloatGridPtr& grid, const RunContext& ctx) {
+    return Repair(grid, ctx).run();
 }
 
 }  // namespace vdbsynth

@@ -1,6 +1,5 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
-#include "libvdbsynth/vdb/read/field_kind.h"
 #include "libvdbsynth/vdb/vdb_fwd.h"
 
 #include <string>
@@ -23,6 +22,6 @@ struct RepairedField {
 /// @throw Error Memory, Cancelled
 /// @par Cost     a sound level set is read twice; repairs take some microseconds per leaf and a copy
 /// @par Repeats  same bits for any number of threads
-RepairedField repairedField(const FloatGridPtr& grid, FieldKind kind, const RunContext& ctx = {});
+RepairedField repairedField(const FloatGridPtr& grid, const RunContext& ctx = {});
 
 }  // namespace vdbsynth

@@ -57,7 +57,7 @@ TEST_CASE("repairedField: a sound level set stays the same tree, whatever its ba
         band.outside = band.inside = band.background = width;
         band.interior = -width;
         const auto grid = bandGrid(ballField(10), 14 + int(width), kVoxel, band);
-        const RepairedField sound = repairedField(grid, FieldKind::LevelSet);
+        const RepairedField sound = repairedField(grid);
         CHECK(sound.field == grid);
         CHECK(sound.said.empty());
         CHECK_FALSE(sound.measureAnew);
@@ -112,9 +112,9 @@ TEST_CASE("repairedField: narrow bands and bands of two widths", "[vdb][property
     Band band;
     band.inside = 6;
     band.interior = -6;
-    becomes(bandGrid(ballField(10), 15, kVoxel, band), kBall, "wider on one side");
+    becomes(bandGrid(ballField(10), 15, kVoxel, band), kBall, "go on beyond");
     band.inside = 100;
-    becomes(bandGrid(ballField(10), 15, kVoxel, band), kBall, "wider on one side");
+    becomes(bandGrid(ballField(10), 15, kVoxel, band), kBall, "go on beyond");
     band = {};
     band.outside = band.background = 8;
     becomes(bandGrid(ballField(10), 20, kVoxel, band), kBall, "end earlier");
@@ -140,6 +140,23 @@ TEST_CASE("repairedField: dense fields of no class, with any background, turned 
     const auto inVoxels =
         denseGrid([](const openvdb::Vec3d& p) { return (p.length() - 10) / kVoxel; }, 20, kVoxel, 0);
     becomes(inVoxels, kBall, "in voxels");
+}
+
+TEST_CASE("repairedField: voxels on the surface that a background of 0 leaves inactive", "[vdb][property]") {
+    const auto grid = denseGrid(boxField({6, 5, 4}), 9, 1, 0);
+    for (auto it = grid->beginValueOn(); it; ++it)
+        if (*it == 0) it.setValueOff();
+    const Read result = read(grid);
+    CHECK_FALSE(test::contains(result.said, "cut open"));
+    CHECK_FALSE(test::contains(result.said, "gaps"));
+    CHECK(result.volume() == 11 * 9 * 7);
+}
+
+TEST_CASE("repairedField: clamped distances of any scale", "[vdb][property]") {
+    const auto grid = denseGrid(
+        [](const openvdb::Vec3d& p) { return std::max(-10.0, std::min(10.0, 2.5 * ballField(10)(p))); }, 20,
+        kVoxel, 0);
+    becomes(grid, kBall, "are no distances");
 }
 
 TEST_CASE("repairedField: `iso` moves the surface of a field of distances", "[vdb][property]") {
@@ -168,6 +185,12 @@ TEST_CASE("repairedField: a solid cut open is closed flat where it was cut", "[v
     const Read octant = read(clipped({{0, 0, 0}, {30, 30, 30}}));
     CHECK(test::contains(octant.said, "low x, low y, low z"));
     CHECK(octant.volume() == Approx(kBall / 8 * 1.15).epsilon(0.05));
+    // Only its active voxels were copied, so that its inside is lost too.
+    Band lost;
+    lost.interior = 3;
+    const auto open = bandGrid(ballField(10), 15, kVoxel, lost);
+    open->clip({{-30, -30, -30}, {30, 30, 0}});
+    becomes(open, half, "cut open at high z");
     // One face within the solid, away from its band.
     becomes(clipped({{-3, -3, 0}, {3, 3, 30}}), 7 * 7 * 9.9, "low z", 0.05);
     // A dense box that ends amid the solid.

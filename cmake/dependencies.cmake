@@ -15,7 +15,6 @@ endif()
 find_package(TinyGLTF REQUIRED)
 find_package(pugixml REQUIRED)
 find_package(ZLIB REQUIRED)
-find_package(tinyobjloader REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(Boost REQUIRED COMPONENTS program_options)
 # Debian's Imath, which OpenEXR's own package file asks for, names that same Python library: by path instead.

@@ -4,6 +4,7 @@
 #include "libvdbsynth/distance/mesh_distance.h"
 #include "libvdbsynth/distance/signed_distance.h"
 #include "libvdbsynth/distance/zero_level.h"
+#include "libvdbsynth/grid/field_sampling.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,14 +14,14 @@
 namespace vdbsynth {
 namespace {
 
-std::vector<IndexBox> partsOf(const IndexBox& box) {
-    constexpr int kLongest = 224, kSide = 176;  // [voxels] of a whole that is not parted, of a part
+// @param longest, mostSide  [voxels] of a whole that is not parted, of a part
+std::vector<IndexBox> partsOf(const IndexBox& box, int longest = 224, int mostSide = 176) {
     IndexBox whole;
     Index3 side;
     for (int axis = 0; axis < 3; ++axis) {
         whole.min[axis] = box.min[axis] & ~7;
         const int length = (box.max[axis] | 7) + 1 - whole.min[axis];
-        const int parts = length <= kLongest ? 1 : (length + kSide - 1) / kSide;
+        const int parts = length <= longest ? 1 : (length + mostSide - 1) / mostSide;
         side[axis] = ((length + parts - 1) / parts + 7) & ~7;
         whole.max[axis] = whole.min[axis] + length - 1;
     }
@@ -74,7 +75,76 @@ BrickField rebuiltPart(const FieldReader& read, const IndexBox& part, const Rebu
     return values;
 }
 
+// The box around the image of a box.
+IndexBox imageOf(const Affine& map, const IndexBox& box) {
+    Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec3d p = transformed(
+            map, {double(corner & 1 ? box.max.x : box.min.x), double(corner & 2 ? box.max.y : box.min.y),
+                  double(corner & 4 ? box.max.z : box.min.z)});
+        for (int axis = 0; axis < 3; ++axis) {
+            low[axis] = std::min(low[axis], p[axis]);
+            high[axis] = std::max(high[axis], p[axis]);
+        }
+    }
+    IndexBox image;
+    for (int axis = 0; axis < 3; ++axis) {
+        image.min[axis] = int(std::floor(low[axis]));
+        image.max[axis] = int(std::ceil(high[axis]));
+    }
+    return image;
+}
+
+// The field at the result's voxels, as inVoxels.
+BrickField sampledInVoxels(const BrickField& field, const Affine& toField, const IndexBox& box,
+                           const RebuildOptions& options, const RunContext& ctx) {
+    const float scale = 1 / options.voxelSize, limit = options.band;
+    return BrickField::fromVoxels(box, ctx, [&](const Index3& p) {
+        const Vec3d place = transformed(toField, {double(p.x), double(p.y), double(p.z)});
+        return std::clamp(sampleTrilinear(field, cast<float>(place)) * scale, -limit, limit);
+    });
+}
+
+BrickField resampledPart(const FieldReader& read, const LatticeMap& map, const IndexBox& part,
+                         const RebuildOptions& options, const RunContext& ctx) {
+    const int rounds = int(std::ceil(options.halfWidth));
+    const IndexBox reach = imageOf(map.toField, part.expanded(rounds + 3)).expanded(1);
+    const std::shared_ptr<const BrickField> field = read(samplesFor(reach));
+    const BrickField own = sampledInVoxels(*field, map.toField, part.expanded(1), options, ctx);
+    Mesh mesh = zeroLevel(*field, reach, options.facing, ctx);
+    if (mesh.faceCount() == 0)
+        return BrickField(part, own.at(part.min) < 0 ? -options.halfWidth : options.halfWidth);
+    for (Vec3f& p : mesh.points) p = cast<float>(transformed(map.fromField, cast<double>(p)));
+    const BrickField distance = meshDistance(mesh, part.expanded(rounds + 1), options.halfWidth, ctx);
+    BrickField values =
+        options.keepDistances
+            ? keepingDistances({distance, part.min}, {own, part.min}, part.size(), options.band, ctx)
+            : withSigns({distance, part.min}, {own, part.min}, part.size(), ctx);
+    values.translate(part.min);
+    return values;
+}
+
+// Voxels of the field along one of the result's, at most.
+double coarsening(const Affine& toField) {
+    double most = 1;
+    for (std::size_t column = 0; column < 12; column += 4)
+        most = std::max(most, length(Vec3d{toField[column], toField[column + 1], toField[column + 2]}));
+    return most;
+}
+
 }  // namespace
+
+void resampleBand(const FieldReader& read, const LatticeMap& map, const IndexBox& box,
+                  const RebuildOptions& options, const PartTaker& take, const RunContext& ctx) {
+    constexpr double kFieldVoxels = 1024;  // along a part: bounds the memory of its field and mesh
+    const int side = std::max(16, int(std::min(176.0, kFieldVoxels / coarsening(map.toField))));
+    const std::vector<IndexBox> parts = partsOf(box, side, side);
+    Stage stage(ctx, "resampling", parts.size());
+    for (const IndexBox& part : parts) {
+        take(resampledPart(read, map, part, options, ctx));
+        stage.advance();
+    }
+}
 
 void rebuildBand(const FieldReader& read, const IndexBox& box, const RebuildOptions& given,
                  const PartTaker& take, const RunContext& ctx) {

@@ -2,6 +2,7 @@
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/distance/zero_level.h"
 #include "libvdbsynth/grid/brick_field.h"
+#include "libvdbsynth/math/affine.h"
 
 #include <functional>
 #include <memory>
@@ -36,6 +37,23 @@ using PartTaker = std::function<void(const BrickField& part)>;
 /// @par Repeats same bits for any number of threads
 void rebuildBand(const FieldReader& read, const IndexBox& box, const RebuildOptions& options,
                  const PartTaker& take, const RunContext& ctx = {});
+
+/// Where the voxels of one lattice lie in another.
+struct LatticeMap {
+    Affine toField;    ///< from the result's index space to the field's
+    Affine fromField;  ///< its inverse
+};
+
+/// rebuildBand on another lattice, of any scale, rotation or shear: the zero level is meshed in the field's
+/// voxels, distances to it are measured in the result's, signs are those of the trilinear field. So a closed
+/// void stays one as long as a voxel of the result lies in it.
+/// @param options  its voxelSize, keepDistances and band are in voxels of the result
+/// @param box      of the result's index space: what the band may touch
+/// @throw Error Cancelled
+/// @par Cost    as rebuildBand; coarser by a factor f: as of the field, at most (1 + 16 f / 1024)^3 times
+/// @par Repeats same bits for any number of threads
+void resampleBand(const FieldReader& read, const LatticeMap& map, const IndexBox& box,
+                  const RebuildOptions& options, const PartTaker& take, const RunContext& ctx = {});
 
 /// rebuildBand of a whole field, as one.
 /// @param field  in index space

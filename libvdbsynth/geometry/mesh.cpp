@@ -42,14 +42,6 @@ void countEdges(const Mesh& mesh, MeshSummary& summary) {
 
 }  // namespace
 
-void appendPolygon(Mesh& mesh, const std::uint32_t* corners, std::size_t count) {
-    if (count == 3) mesh.triangles.push_back({corners[0], corners[1], corners[2]});
-    if (count == 4) mesh.quads.push_back({corners[0], corners[1], corners[2], corners[3]});
-    if (count < 5) return;
-    for (std::size_t i = 1; i + 1 < count; ++i)
-        mesh.triangles.push_back({corners[0], corners[i], corners[i + 1]});
-}
-
 std::vector<Triangle> triangulated(const Mesh& mesh) {
     std::vector<Triangle> all;
     all.reserve(mesh.triangles.size() + 2 * mesh.quads.size());

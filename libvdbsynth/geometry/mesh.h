@@ -39,10 +39,6 @@ struct MeshSummary {
     }
 };
 
-/// Appends a convex polygon: three corners as a triangle, four as a quad, more as a fan.
-/// Polygons of fewer than three corners are ignored.
-void appendPolygon(Mesh& mesh, const std::uint32_t* corners, std::size_t count);
-
 /// All faces as triangles, quads split along their shorter diagonal (the first on a tie).
 std::vector<Triangle> triangulated(const Mesh& mesh);
 

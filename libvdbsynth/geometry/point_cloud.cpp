@@ -1,12 +1,14 @@
 #include "libvdbsynth/geometry/point_cloud.h"
 
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/geometry/local_points.h"
 #include "libvdbsynth/geometry/point_neighbours.h"
 
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <queue>
 #include <tuple>
@@ -44,6 +46,36 @@ void dropRepeats(PointCloud& cloud) {
     std::vector<char> keep(cloud.points.size(), 1);
     for (std::size_t i = 1; i < order.size(); ++i) keep[order[i]] = key(order[i]) != key(order[i - 1]);
     keepOnly(cloud, keep);
+}
+
+// A point this many spreads from the others' centre leaves them no digits in floats of their common box.
+constexpr double kAstray = 1e6;
+
+// Removes points that are so far out that distances to them mean nothing. @return their number
+std::size_t dropAstray(PointCloud& cloud) {
+    const PointCore core = coreOf(cloud.points);
+    if (!(core.spread > 0)) return 0;
+    std::vector<char> keep(cloud.points.size());
+    for (std::size_t i = 0; i < keep.size(); ++i)
+        keep[i] = distanceFrom(core, cast<double>(cloud.points[i])) <= kAstray * core.spread;
+    const auto astray = std::size_t(std::count(keep.begin(), keep.end(), 0));
+    if (astray > 0) keepOnly(cloud, keep);
+    return astray;
+}
+
+// The power of two that brings points so large or small that their squares leave the range of floats to about
+// 1; 1 for all others.
+double unitScale(const PointCloud& cloud) {
+    const double spread = coreOf(cloud.points).spread;
+    return spread > 0 && (spread < 1e-12 || spread > 1e9) ? std::ldexp(1.0, -std::ilogb(spread)) : 1;
+}
+
+PointCloud atUnitScale(const PointCloud& cloud) {
+    PointCloud scaled;
+    const double scale = unitScale(cloud);
+    scaled.points.reserve(cloud.points.size());
+    for (const Vec3f& p : cloud.points) scaled.points.push_back(cast<float>(cast<double>(p) * scale));
+    return scaled;
 }
 
 // The kPlane nearest points of each, itself included; short rows end with the point itself.
@@ -140,6 +172,7 @@ void orientNormals(PointCloud& cloud, const Graph& graph, const RunContext& ctx)
 std::vector<float> pointSpacing(const PointCloud& cloud, const RunContext& ctx) {
     constexpr std::size_t kNearest = 7;  // itself and six
     const PointNeighbours tree(cloud.points);
+    const std::size_t wanted = std::min(kNearest, cloud.points.size());
     std::vector<float> spacing(cloud.points.size(), 0);
     parallelFor(ctx, cloud.points.size(), 1024, [&](std::size_t begin, std::size_t end) {
         std::uint32_t numbers[kNearest];
@@ -149,6 +182,8 @@ std::vector<float> pointSpacing(const PointCloud& cloud, const RunContext& ctx) 
             float sum = 0;
             for (std::size_t k = 0; k < found; ++k) sum += squared[k];
             spacing[i] = found > 1 ? std::sqrt(sum / float(found - 1) / 2) : 0;
+            // The tree finds no neighbour whose squared distance exceeds floats.
+            if (found < wanted) spacing[i] = std::numeric_limits<float>::infinity();
         }
     });
     return spacing;
@@ -157,7 +192,9 @@ std::vector<float> pointSpacing(const PointCloud& cloud, const RunContext& ctx) 
 std::size_t dropOutliers(PointCloud& cloud, const RunContext& ctx) {
     dropRepeats(cloud);
     if (cloud.points.size() < 8) return 0;
-    const std::vector<float> spacing = pointSpacing(cloud, ctx);
+    const std::size_t astray = dropAstray(cloud);
+    const std::vector<float> spacing =
+        unitScale(cloud) == 1 ? pointSpacing(cloud, ctx) : pointSpacing(atUnitScale(cloud), ctx);
     std::vector<float> sorted = spacing;
     const auto median = sorted.begin() + std::ptrdiff_t(sorted.size() / 2);
     std::nth_element(sorted.begin(), median, sorted.end());
@@ -165,11 +202,12 @@ std::size_t dropOutliers(PointCloud& cloud, const RunContext& ctx) {
     for (std::size_t i = 0; i < spacing.size(); ++i) keep[i] = spacing[i] <= 8 * *median;
     const std::size_t before = cloud.points.size();
     keepOnly(cloud, keep);
-    return before - cloud.points.size();
+    return astray + before - cloud.points.size();
 }
 
 void estimateNormals(PointCloud& cloud, const RunContext& ctx) {
-    const std::vector<std::uint32_t> table = neighbourTable(cloud, ctx);
+    const std::vector<std::uint32_t> table =
+        unitScale(cloud) == 1 ? neighbourTable(cloud, ctx) : neighbourTable(atUnitScale(cloud), ctx);
     cloud.normals.assign(cloud.points.size(), Vec3f{});
     parallelFor(ctx, cloud.points.size(), 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) cloud.normals[i] = planeNormal(cloud, &table[i * kPlane]);

@@ -17,12 +17,12 @@ struct PointCloud {
 };
 
 /// Spacing [world] of every point: the root mean square distance to its 6 nearest, over root 2, which on an
-/// even surface is about the distance between neighbours.
+/// even surface is about the distance between neighbours. Infinite where a squared distance exceeds floats.
 /// @par Cost    O(points log points)   @par Repeats same bits for any number of threads
 std::vector<float> pointSpacing(const PointCloud& cloud, const RunContext& ctx = {});
 
 /// Removes points that coincide with an earlier one, and outliers: those whose spacing is over eight times
-/// the median. @return number of outliers removed
+/// the median, and those over a million times farther out than most. @return number of outliers removed
 std::size_t dropOutliers(PointCloud& cloud, const RunContext& ctx = {});
 
 /// Gives every point a normal: that of the plane through its 16 nearest neighbours, oriented consistently

@@ -22,8 +22,9 @@ bool writableMeshFormatOf(const std::string& path, MeshFormat& format);
 /// Attributes of vertices: any scalar property of ply (see groupColumns), colours of obj ("v x y z r g b")
 /// and off (COFF), texture coordinates of obj (a vertex at a seam is duplicated for each), colours, texture
 /// coordinates and custom attributes of glTF. Of glTF all meshes of the scene are read, with their nodes'
-/// transforms; buffers may be files beside it; sparse and quantised data is supported, Draco and meshopt
-/// compression are reported as errors.
+/// transforms, instances (EXT_mesh_gpu_instancing), skins and morph targets in their default pose; buffers
+/// may be files beside it; sparse and quantised data is supported, Draco and meshopt compression (but from a
+/// fallback), glTF 1.0 and other required extensions are errors that name them. What is left out is a note.
 /// @throw Error  Io (missing, a directory, not readable), BadData (truncated, corrupt, an index out of
 ///               range, NaN or infinite coordinates), EmptyInput (no faces)
 /// @par Cost     O(file size) time and memory    @par Repeats yes

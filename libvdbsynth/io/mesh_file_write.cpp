@@ -27,10 +27,13 @@ std::uint8_t byteOf(float value) {
     return std::uint8_t(std::lround(double(std::clamp(value, 0.f, 1.f)) * 255));
 }
 
-void appendPoint(std::string& text, const Vec3f& p) {
+// Floats exactly; with an origin the digits that a float beside it has.
+void appendPoint(std::string& text, const Vec3f& p, const Vec3d& origin) {
+    constexpr int kDigits = 14;
+    const bool far = length(origin) > 0;
     for (int axis = 0; axis < 3; ++axis) {
         if (axis) text += ' ';
-        text += exactText(p[axis]);
+        text += far ? roundedText(origin[axis] + double(p[axis]), kDigits) : exactText(p[axis]);
     }
 }
 
@@ -49,7 +52,7 @@ std::string objText(const Mesh& mesh) {
     const Attribute* colour = plainColour(mesh.attributes);
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {
         text += "v ";
-        appendPoint(text, mesh.points[i]);
+        appendPoint(text, mesh.points[i], mesh.origin);
         for (std::size_t c = 0; colour && c < 3; ++c) {
             text += ' ';
             text += exactText(colour->values[3 * i + c]);
@@ -66,7 +69,7 @@ std::string offText(const Mesh& mesh) {
     std::string text = std::string(colour ? "COFF\n" : "OFF\n") + std::to_string(mesh.points.size()) + ' ' +
                        std::to_string(mesh.faceCount()) + " 0\n";
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {
-        appendPoint(text, mesh.points[i]);
+        appendPoint(text, mesh.points[i], mesh.origin);
         for (std::size_t c = 0; colour && c < 3; ++c)
             text += ' ' + std::to_string(byteOf(colour->values[3 * i + c]));
         text += colour ? " 255\n" : "\n";
@@ -91,9 +94,13 @@ std::string wordOf(std::string name) {
 // The vertices of a PLY file: their properties and their bytes.
 class PlyVertices {
 public:
-    PlyVertices(const std::vector<Vec3f>& points, const std::vector<Vec3f>& normals,
+    PlyVertices(const std::vector<Vec3f>& points, const Vec3d& origin, const std::vector<Vec3f>& normals,
                 const Attributes& attributes)
-        : mPoints(points), mNormals(normals), mColour(plainColour(attributes)) {
+        : mPoints(points),
+          mOrigin(origin),
+          mFar(length(origin) > 0),
+          mNormals(normals),
+          mColour(plainColour(attributes)) {
         const Attribute* alpha = findAttribute(attributes, "Alpha");
         mAlpha = mColour && alpha && alpha->width == 1 ? alpha : nullptr;
         for (const Attribute& attribute : attributes)
@@ -101,8 +108,9 @@ public:
     }
 
     std::string header() const {
-        std::string text = "element vertex " + std::to_string(mPoints.size()) +
-                           "\nproperty float x\nproperty float y\nproperty float z\n";
+        const std::string type = mFar ? "double" : "float";
+        std::string text = "element vertex " + std::to_string(mPoints.size()) + "\nproperty " + type +
+                           " x\nproperty " + type + " y\nproperty " + type + " z\n";
         if (!mNormals.empty()) text += "property float nx\nproperty float ny\nproperty float nz\n";
         if (mColour) text += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
         if (mAlpha) text += "property uchar alpha\n";
@@ -120,7 +128,10 @@ public:
 
     void append(std::string& text) const {
         for (std::size_t i = 0; i < mPoints.size(); ++i) {
-            appendBytes(text, mPoints[i]);
+            if (mFar)
+                appendBytes(text, mOrigin + cast<double>(mPoints[i]));
+            else
+                appendBytes(text, mPoints[i]);
             if (!mNormals.empty()) appendBytes(text, mNormals[i]);
             for (std::size_t c = 0; mColour && c < 3; ++c) text += char(byteOf(mColour->values[3 * i + c]));
             if (mAlpha) text += char(byteOf(mAlpha->values[i]));
@@ -131,7 +142,10 @@ public:
     }
 
 private:
-    const std::vector<Vec3f>&mPoints, &mNormals;
+    const std::vector<Vec3f>& mPoints;
+    Vec3d mOrigin;
+    bool mFar;  // coordinates are written as doubles
+    const std::vector<Vec3f>& mNormals;
     const Attribute *mColour, *mAlpha = nullptr;
     std::vector<const Attribute*> mOthers;
 };
@@ -140,7 +154,7 @@ const char* const kPlyStart = "ply\nformat binary_little_endian 1.0\ncomment vdb
 
 std::string plyBytes(const Mesh& mesh) {
     static const std::vector<Vec3f> none;
-    const PlyVertices vertices(mesh.points, none, mesh.attributes);
+    const PlyVertices vertices(mesh.points, mesh.origin, none, mesh.attributes);
     std::string text = kPlyStart + vertices.header() + "element face " + std::to_string(mesh.faceCount()) +
                        "\nproperty list uchar uint vertex_indices\nend_header\n";
     vertices.append(text);
@@ -161,7 +175,10 @@ std::string stlBytes(const Mesh& mesh) {
     const std::vector<Triangle> triangles = triangulated(mesh);
     appendBytes(text, std::uint32_t(triangles.size()));
     for (const Triangle& t : triangles) {
-        const Vec3f a = mesh.points[t[0]], b = mesh.points[t[1]], c = mesh.points[t[2]];
+        const auto corner = [&](std::size_t k) {
+            return cast<float>(mesh.origin + cast<double>(mesh.points[t[k]]));
+        };
+        const Vec3f a = corner(0), b = corner(1), c = corner(2);
         appendBytes(text, normalized(cross(b - a, c - a)));
         appendBytes(text, a);
         appendBytes(text, b);
@@ -195,8 +212,9 @@ void writeMesh(const std::string& path, MeshFormat format, const Mesh& mesh) {
 
 void writePointsPly(const std::string& path, const PointCloud& cloud) {
     static const std::vector<Vec3f> none;
-    const PlyVertices vertices(
-        cloud.points, cloud.normals.size() == cloud.points.size() ? cloud.normals : none, cloud.attributes);
+    const PlyVertices vertices(cloud.points, cloud.origin,
+                               cloud.normals.size() == cloud.points.size() ? cloud.normals : none,
+                               cloud.attributes);
     std::string text = kPlyStart + vertices.header() + "end_header\n";
     vertices.append(text);
     writeWholeFile(path, text);

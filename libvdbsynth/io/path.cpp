@@ -48,9 +48,10 @@ std::string pathBelow(const std::string& folder, const std::string& name, std::s
 }
 
 bool isKnownExtension(const std::string& extension) {
-    static const std::set<std::string> known{
-        "vdb",  "obj", "ply", "stl", "off", "mesh", "gltf", "glb", "xyz", "pwn", "pcd",   "png",   "jpg",
-        "jpeg", "pgm", "ppm", "pnm", "tif", "tiff", "exr",  "npy", "vti", "nii", "sgems", "gslib", "inr"};
+    static const std::set<std::string> known{"vdb",    "obj", "ply", "stl",  "off", "mesh",  "gltf",  "glb",
+                                             "xyz",    "pwn", "pcd", "pts",  "txt", "asc",   "csv",   "xyzn",
+                                             "xyzrgb", "png", "jpg", "jpeg", "pgm", "ppm",   "pnm",   "tif",
+                                             "tiff",   "exr", "npy", "vti",  "nii", "sgems", "gslib", "inr"};
     return known.count(extension.size() > 3 && extension.compare(extension.size() - 3, 3, ".gz") == 0
                            ? extension.substr(0, extension.size() - 3)
                            : extension) > 0;

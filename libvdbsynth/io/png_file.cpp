@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/raster_file.h"
+#include "libvdbsynth/io/readers/orientation.h"
 #include "libvdbsynth/io/readers/raster_readers.h"
 #include "libvdbsynth/io/readers/whole_file.h"
 
@@ -12,6 +13,7 @@
 #include <cmath>
 #include <csetjmp>
 #include <cstring>
+#include <string_view>
 
 namespace vdbsynth {
 namespace {
@@ -86,6 +88,21 @@ bool decode(png_structp png, png_infop info, Source& source, Decoded& image, con
     return true;
 }
 
+// The data of the first chunk of a kind, empty if there is none. libpng gives EXIF before the pixels only;
+// this finds it behind them too.
+std::string_view chunkNamed(const std::string& content, std::string_view name) {
+    constexpr std::size_t kSignature = 8, kAround = 12;  // a chunk's length, name and checksum
+    const std::string_view all(content);
+    for (std::size_t at = kSignature; at + kAround <= all.size();) {
+        std::size_t length = 0;
+        for (std::size_t i = 0; i < 4; ++i) length = length << 8 | static_cast<unsigned char>(all[at + i]);
+        if (length > all.size() - at - kAround) break;
+        if (all.substr(at + 4, 4) == name) return all.substr(at + 8, length);
+        at += kAround + length;
+    }
+    return {};
+}
+
 void appendBytes(png_structp png, png_bytep bytes, png_size_t count) {
     static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(bytes), count);
 }
@@ -155,7 +172,8 @@ void writeGreyPng(const std::string& path, int width, int height, const std::vec
     writeWholeFile(path, bytes);
 }
 
-Raster readPng(const std::string& path, const std::string& content, const RunContext& ctx) {
+Raster readPng(const std::string& path, const std::string& content, const RasterReadOptions&,
+               const RunContext& ctx) {
     Source source{content};
     png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, fail, ignore);
     png_infop info = png ? png_create_info_struct(png) : nullptr;
@@ -186,6 +204,7 @@ Raster readPng(const std::string& path, const std::string& content, const RunCon
         for (std::size_t c = 0; c < std::size_t(channels); ++c)
             raster.values[i * std::size_t(channels) + c] = missing ? std::nanf("") : sample(i * step + c);
     }
+    turnUpright(path, raster, exifOrientation(chunkNamed(content, "eXIf")), "EXIF orientation", ctx);
     return raster;
 }
 

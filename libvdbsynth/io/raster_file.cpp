@@ -1,9 +1,12 @@
 #include "libvdbsynth/io/raster_file.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/printable_text.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/readers/raster_readers.h"
 #include "libvdbsynth/io/readers/whole_file.h"
+#include "libvdbsynth/raster/raster_alignment.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +16,8 @@
 namespace vdbsynth {
 namespace {
 
-using Reader = Raster (*)(const std::string&, const std::string&, const RunContext&);
+using Reader = Raster (*)(const std::string&, const std::string&, const RasterReadOptions&,
+                          const RunContext&);
 
 const std::map<std::string, Reader>& readers() {
     static const std::map<std::string, Reader> table{
@@ -103,6 +107,37 @@ void toFloats(const char* bytes, std::size_t count, SampleType type, bool swap, 
     }
 }
 
+std::size_t chosenArray(const std::string& path, const std::vector<std::string>& names, std::size_t standard,
+                        const RasterReadOptions& options, const RunContext& ctx) {
+    constexpr std::size_t kMostListed = 20;
+    std::string list;
+    for (std::size_t i = 0; i < std::min(names.size(), kMostListed); ++i)
+        list += (i > 0 ? ", " : "") + names[i];
+    if (names.size() > kMostListed) list += " and " + std::to_string(names.size() - kMostListed) + " more";
+    if (!options.array.empty()) {
+        const auto found = std::find(names.begin(), names.end(), options.array);
+        if (found == names.end())
+            throw Error(ErrorCode::BadData, "`grid` " + options.array + ": not in " + path + ", which has " +
+                                                (names.empty() ? "no arrays" : list));
+        return std::size_t(found - names.begin());
+    }
+    if (names.size() > 1)
+        message(ctx, MessageLevel::Note,
+                path + ": holds " + list + "; " + names[standard] + " is read; `grid` chooses another");
+    return standard;
+}
+
+void sayTurn(const std::string& path, const Raster& raster, const RunContext& ctx) {
+    if (runAlongWorld(raster.axes)) return;
+    message(ctx, MessageLevel::Note,
+            path + ": its axes are turned by " + roundedText(turnOf(raster.axes).degrees, 3) +
+                " degrees from those of the world; so are the voxels of the result");
+}
+
+std::string printable(std::string_view text, std::size_t most) {
+    return printableText(text.substr(0, most));
+}
+
 Raster makeRaster(const std::string& path, std::int64_t columns, std::int64_t rows, std::int64_t slices,
                   int channels, const RunContext& ctx) {
     constexpr std::int64_t kMost = 1 << 24;
@@ -126,7 +161,7 @@ bool isRasterPath(const std::string& path) {
     return readers().count(readExtensionOf(path)) > 0;
 }
 
-Raster readRaster(const std::string& path, const RunContext& ctx) {
+Raster readRaster(const std::string& path, const RasterReadOptions& options, const RunContext& ctx) {
     const auto reader = readers().find(readExtensionOf(path));
     if (reader == readers().end())
         throw Error(ErrorCode::InvalidOption, path + ": unknown extension; rasters are " + kRasterExtensions);
@@ -134,7 +169,10 @@ Raster readRaster(const std::string& path, const RunContext& ctx) {
     const std::string content = readWholeFile(path);
     stage.advance();
     if (content.empty()) throw Error(ErrorCode::BadData, path + ": the file is empty");
-    Raster raster = reader->second(path, content, ctx);
+    Raster raster = reader->second(path, content, options, ctx);
+    if (!options.array.empty() && raster.arrays.empty())
+        message(ctx, MessageLevel::Note,
+                path + ": holds one array without a name; `grid` does not apply to it");
     for (int axis = 0; axis < 3; ++axis)
         if (!(raster.spacing[axis] > 0 && raster.spacing[axis] < 1e30) || !std::isfinite(raster.origin[axis]))
             throw Error(ErrorCode::BadData, path + ": its spacing or origin is not a usable number");

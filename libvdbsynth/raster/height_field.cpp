@@ -86,6 +86,35 @@ HeightMap resampled(const HeightMap& map, double ratioX, double ratioY, const Ru
     return result;
 }
 
+// Sizes [world] of an image's slab.
+struct Slab {
+    double pixelX, pixelY, voxel, scale, offset, low, high, base;  // height = value * scale + offset
+};
+
+// Share of pixels with data that lie over a voxel above or below all samples around their place.
+double lostShare(const HeightMap& map, const HeightMap& samples, const Slab& slab) {
+    const double unit = slab.scale / slab.voxel;
+    std::size_t lost = 0, all = 0;
+    for (int y = 0; y < map.rows; ++y)
+        for (int x = 0; x < map.columns; ++x) {
+            const float value = map.at(x, y);
+            if (std::isnan(value)) continue;
+            const int column = int((x + 0.5) * samples.columns / map.columns),
+                      row = int((y + 0.5) * samples.rows / map.rows);
+            float low = 1e30f, high = -1e30f;
+            for (int j = -1; j <= 1; ++j)
+                for (int i = -1; i <= 1; ++i) {
+                    const float around = samples.at(column + i, row + j);
+                    if (std::isnan(around)) continue;
+                    low = std::min(low, around);
+                    high = std::max(high, around);
+                }
+            ++all;
+            lost += double(value - high) * unit > 1 || double(low - value) * unit > 1 ? 1 : 0;
+        }
+    return all > 0 ? double(lost) / double(all) : 0;
+}
+
 // Signed distances [voxels, up to 4] in the plane to the edge of the data: negative where there is data.
 std::vector<float> edgeDistances(const HeightMap& map) {
     constexpr int kReach = 4;
@@ -109,17 +138,16 @@ std::string rounded(double value) {
     return roundedText(value, 6);
 }
 
-// Sizes [world] of an image's slab.
-struct Slab {
-    double pixelX, pixelY, voxel, scale, offset, low, high, base;  // height = value * scale + offset
-};
+bool asksPixelSize(const HeightOptions& options) {
+    return options.pixelSize > 0 || options.pixelSides.x > 0;
+}
 
-Slab planSlab(const Raster& raster, const RasterRange& range, const HeightOptions& options) {
+Slab planSlab(const std::string& name, const Raster& raster, const RasterRange& range,
+              const HeightOptions& options) {
     Slab slab{};
-    const double smallest = std::min(raster.spacing.x, raster.spacing.y);
-    const double unit = options.pixelSize > 0 ? options.pixelSize / smallest : 1;
-    slab.pixelX = raster.spacing.x * unit;
-    slab.pixelY = raster.spacing.y * unit;
+    const Vec3d pixel = cellSides(name, raster, /* image= */ true, options.pixelSize, options.pixelSides);
+    slab.pixelX = pixel.x;
+    slab.pixelY = pixel.y;
     const double side = std::max(raster.size.x * slab.pixelX, raster.size.y * slab.pixelY);
     slab.voxel = options.voxelSize > 0    ? options.voxelSize
                  : options.resolution > 0 ? side / options.resolution
@@ -159,7 +187,7 @@ void validate(const HeightOptions& options) {
                       "above 0 (world), or 0 for the default");
     };
     length(options.voxelSize, "voxelSize");
-    length(options.pixelSize, "pixelSize");
+    requirePixelSize(options.pixelSize, options.pixelSides);
     length(options.height, "height");
     length(options.base, "base");
     requireOption(options.resolution == 0 || (options.resolution >= 2 && options.resolution <= 100000),
@@ -179,7 +207,7 @@ RasterField heightField(const std::string& name, const Raster& given, const Heig
                     name + ": " + std::to_string(range.infinite) + " values are infinite");
     if (range.missing == raster.values.size())
         throw Error(ErrorCode::EmptyInput, name + ": no pixel has data");
-    const Slab slab = planSlab(raster, range, options);
+    const Slab slab = planSlab(name, raster, range, options);
     const double columns = raster.size.x * slab.pixelX / slab.voxel,
                  rows = raster.size.y * slab.pixelY / slab.voxel,
                  tall = (slab.high - slab.low + slab.base) / slab.voxel;
@@ -192,11 +220,13 @@ RasterField heightField(const std::string& name, const Raster& given, const Heig
                   name + " in voxels of " + rounded(slab.voxel),
                   "use a larger `voxelSize` or a smaller `resolution`");
     Stage stage(ctx, "heights to field", 1);
-    const HeightMap map =
-        resampled(fromRaster(raster), slab.voxel / slab.pixelX, slab.voxel / slab.pixelY, ctx);
+    const HeightMap pixels = fromRaster(raster),
+                    map = resampled(pixels, slab.voxel / slab.pixelX, slab.voxel / slab.pixelY, ctx);
     const Axes axes = axesOf(options.plane);
     RasterField result;
     result.voxelSize = slab.voxel;
+    if (map.columns < pixels.columns || map.rows < pixels.rows)
+        result.lostShare = lostShare(pixels, map, slab);
     result.domain.min[axes.column] = result.domain.min[axes.row] = 0;
     result.domain.max[axes.column] = map.columns - 1;
     result.domain.max[axes.row] = map.rows - 1;
@@ -227,7 +257,7 @@ RasterField heightField(const std::string& name, const Raster& given, const Heig
                          rounded(slab.pixelX) +
                          (slab.pixelX == slab.pixelY ? "" : " x " + rounded(slab.pixelY)) + ", voxels of " +
                          rounded(slab.voxel) + " (world" +
-                         (raster.unit.empty() || options.pixelSize > 0 ? "" : ", in " + raster.unit) + ")" +
+                         (raster.unit.empty() || asksPixelSize(options) ? "" : ", in " + raster.unit) + ")" +
                          (options.height > 0 ? "" : "; `height` sets how tall it is");
     if (range.missing > 0)
         result.description += "; " + std::to_string(range.missing) + " pixels without data are holes";

@@ -1,7 +1,9 @@
 #pragma once
 #include "libvdbsynth/grid/brick_field.h"
 #include "libvdbsynth/math/vec3.h"
+#include "libvdbsynth/raster/raster.h"
 
+#include <array>
 #include <string>
 
 namespace vdbsynth {
@@ -11,9 +13,12 @@ namespace vdbsynth {
 struct RasterField {
     BrickField field;
     IndexBox domain;
-    double voxelSize = 1;     ///< [world]
-    Vec3d origin{0, 0, 0};    ///< [world] of voxel 0,0,0
-    std::string description;  ///< the choices made, one line
+    double voxelSize = 1;                    ///< [world]
+    Vec3d origin{0, 0, 0};                   ///< [world] of voxel 0,0,0
+    std::array<Vec3d, 3> axes = kWorldAxes;  ///< unit directions of the voxels, at right angles
+    /// Share of an image's pixels whose heights lie farther than a voxel from the surface.
+    double lostShare = 0;
+    std::string description;                 ///< the choices made, one line
 };
 
 inline constexpr float kRasterFieldLimit = 4.f;  ///< largest value of the fields here

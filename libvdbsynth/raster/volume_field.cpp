@@ -1,10 +1,11 @@
-// Volumes; height fields are in height_field.cpp.
+// What of a volume is solid; its voxels are in volume_field_cubes.cpp, height fields in height_field.cpp.
 #include "libvdbsynth/raster/volume_field.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/distance/crossing_field.h"
 #include "libvdbsynth/math/lattice.h"
+#include "libvdbsynth/raster/volume_field_steps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -130,32 +131,6 @@ BrickField labelField(const std::string& name, const Raster& raster, const Raste
         [&](const Index3& corner, const Index3& size, float* out) { smooth.readBox(corner, size, out); });
 }
 
-// A field on cells of one shape, resampled to cubes: trilinear between samples, `ratio` samples per voxel
-// along each axis.
-BrickField onCubes(const BrickField& field, const IndexBox& domain, const Vec3d& ratio,
-                   const RunContext& ctx) {
-    return crossingField(domain.expanded(kRasterFieldMargin), kRasterFieldLimit, ctx,
-                         [&](const Index3& corner, const Index3& size, float* out) {
-                             forEachVoxel({corner, corner + size - Index3{1, 1, 1}}, [&](const Index3& p) {
-                                 Index3 base;
-                                 double t[3];
-                                 for (int axis = 0; axis < 3; ++axis) {
-                                     const double at = p[axis] * ratio[axis];
-                                     base[axis] = int(std::floor(at));
-                                     t[axis] = at - base[axis];
-                                 }
-                                 double sum = 0;
-                                 for (int i = 0; i < 8; ++i) {
-                                     const Index3 d{i >> 2, i >> 1 & 1, i & 1};
-                                     const double weight = (d.x ? t[0] : 1 - t[0]) * (d.y ? t[1] : 1 - t[1]) *
-                                                           (d.z ? t[2] : 1 - t[2]);
-                                     if (weight > 0) sum += weight * double(field.at(base + d));
-                                 }
-                                 *out++ = float(sum);
-                             });
-                         });
-}
-
 std::vector<LabelRange> chooseLabels(const std::string& name, const RasterRange& range,
                                      const VolumeOptions& options, std::string& description) {
     if (!options.labels.empty()) return options.labels;
@@ -180,14 +155,14 @@ void validate(const VolumeOptions& options) {
         requireOption(range.first <= range.second, "labels",
                       exactText(range.first) + ".." + exactText(range.second),
                       "a smaller and a larger value");
-    requireOption(options.pixelSize >= 0 && options.pixelSize < 1e30, "pixelSize",
-                  roundedText(options.pixelSize, 6), "above 0 (world), or 0 for the file's");
+    requirePixelSize(options.pixelSize, options.pixelSides);
 }
 
 RasterField volumeField(const std::string& name, const Raster& given, const VolumeOptions& options,
                         const RunContext& ctx) {
     validate(options);
     requireMemory(ctx, double(given.sampleCount()) * 12, name, "crop or shrink it first");
+    const Vec3d cell = cellSides(name, given, /* image= */ false, options.pixelSize, options.pixelSides);
     Stage stage(ctx, "volume to field", 1);
     const Raster colourless = given.channels == 1 ? Raster() : luminance(given);
     const Raster& raster = given.channels == 1 ? given : colourless;
@@ -208,24 +183,8 @@ RasterField volumeField(const std::string& name, const Raster& given, const Volu
         result.field =
             labelField(name, raster, range, chooseLabels(name, range, options, result.description), ctx);
     }
-    const double smallest = std::min({raster.spacing.x, raster.spacing.y, raster.spacing.z});
-    result.voxelSize = options.pixelSize > 0 ? options.pixelSize : smallest;
-    result.origin = options.pixelSize > 0 ? Vec3d{0, 0, 0} : raster.origin;
-    result.domain = IndexBox::fromSize(raster.size);
-    const Vec3d ratio{smallest / raster.spacing.x, smallest / raster.spacing.y, smallest / raster.spacing.z};
-    if (std::min({ratio.x, ratio.y, ratio.z}) < 1 - 1e-6) {
-        for (int axis = 0; axis < 3; ++axis)
-            if (!(raster.size[axis] / ratio[axis] < 1e8))
-                throw Error(ErrorCode::Unusable, name + ": its cells are " + rounded(1 / ratio[axis]) +
-                                                     " times as long as wide; resample it first");
-        for (int axis = 0; axis < 3; ++axis)
-            result.domain.max[axis] = std::max(0, int(std::lround((raster.size[axis] - 1) / ratio[axis])));
-        requireMemory(ctx, double(result.domain.volume()) * 8, name + " resampled to cubes",
-                      "resample it to larger ones first");
-        result.field = onCubes(result.field, result.domain, ratio, ctx);
-        result.description += std::string(result.description.empty() ? "" : "; ") +
-                              "its cells are not cubes: resampled to their smallest side";
-    }
+    const bool inPlace = options.pixelSize <= 0 && options.pixelSides.x <= 0;
+    placeField(name, raster, cell, inPlace, result, ctx);
     stage.advance();
     return result;
 }

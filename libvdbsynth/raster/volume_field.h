@@ -12,10 +12,10 @@ namespace vdbsynth {
 void validate(const VolumeOptions& options);
 
 /// A volume as a field at its own resolution; cells that are not cubes are resampled (trilinear) to their
-/// smallest side. With a threshold the surface is that of trilinear interpolation. With labels, or for a
-/// volume of only two values (the larger is solid), the steps between voxels are smoothed under the
-/// constraint that every sample keeps its sign [whitaker2000], so volume fractions and thin parts are kept.
-/// Samples without data are outside.
+/// smallest side, and sheared ones to cubes along the directions at right angles nearest to theirs. With a
+/// threshold the surface is that of trilinear interpolation. With labels, or for a volume of only two values
+/// (the larger is solid), the steps between voxels are smoothed under the constraint that every sample keeps
+/// its sign [whitaker2000], so volume fractions and thin parts are kept. Samples without data are outside.
 /// @throw Error InvalidOption (threshold and labels), BadData (infinite values), EmptyInput, Unusable
 /// (neither was given; no surface at the threshold; no sample has such a label), Memory
 /// @par Cost    O(samples)   @par Repeats same bits for any number of threads

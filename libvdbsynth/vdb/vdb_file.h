@@ -77,8 +77,11 @@ GridPtr pickedGrid(const std::string& path, const std::vector<GridPtr>& grids,
                    const VdbReadOptions& options = {}, std::string* note = nullptr);
 
 /// The model at another voxel size; its domain is the same box of the world in whole voxels. A level set is
-/// resampled by its zero level, so detail under a voxel is lost, never added. @throw Error EmptyInput, Memory
-LevelSet resampled(const LevelSet& model, double voxelSize, const RunContext& ctx = {});
+/// resampled by its zero level, so detail under a voxel is lost, never added: what is lost is a warning.
+/// Closed voids stay. @param name  begins the messages
+/// @throw Error EmptyInput (nothing is left), Unusable (over half of the surface is lost), Memory
+LevelSet resampled(const LevelSet& model, double voxelSize, const RunContext& ctx = {},
+                   const std::string& name = "the model");
 
 /// Reads a float or double grid unchanged: the named one, or the only one. @throw Error as readVdbModel
 FloatGridPtr readVdbFloatGrid(const std::string& path, const std::string& name, const RunContext& ctx = {});

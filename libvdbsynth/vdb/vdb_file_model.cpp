@@ -2,6 +2,9 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/vdb/convert/far_grid.h"
+#include "libvdbsynth/vdb/convert/surface_kept.h"
+#include "libvdbsynth/vdb/convert/zero_level.h"
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/read/field_kind.h"
 #include "libvdbsynth/vdb/read/level_set_repair.h"
@@ -10,7 +13,6 @@
 #include "libvdbsynth/vdb/wall.h"
 
 #include <openvdb/openvdb.h>
-#include <openvdb/tools/LevelSetRebuild.h>
 
 #include <algorithm>
 #include <cmath>
@@ -59,14 +61,12 @@ bool keepsDistances(const openvdb::FloatGrid& grid) {
     return true;
 }
 
-// The zero level in the voxels of another transform, by OpenVDB.
+// The zero level in the voxels of another transform.
 openvdb::FloatGrid::Ptr rebuiltBy(const openvdb::FloatGrid& grid, const openvdb::math::Transform& transform,
                                   const std::string& what, const RunContext& ctx) {
-    return withThreads(ctx, [&] {
-        return behindWall(ErrorCode::Unusable, what, [&] {
-            return openvdb::tools::levelSetRebuild(grid, 0.f, kHalfWidth, kHalfWidth, &transform);
-        });
-    });
+    const openvdb::FloatGrid::Ptr lattice = openvdb::FloatGrid::create();
+    lattice->setTransform(transform.copy());
+    return resampleLevelSet(grid, *lattice, kHalfWidth, what, ctx);
 }
 
 // Negative where a fog is denser than `iso`.
@@ -159,7 +159,7 @@ LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& gri
     const openvdb::FloatGrid::Ptr given = asFloat(picked(path, grids, options, ctx));
     refuseUnusable(path, *given);
     // A separate name, metadata and transform; the tree is the caller's and does not change.
-    openvdb::FloatGrid::Ptr grid = given->copy();
+    openvdb::FloatGrid::Ptr grid = nearZero(given->copy());
     LevelSet model;
     std::string domainText;
     if (const auto meta = grid->getMetadata<openvdb::StringMetadata>(kDomainKey)) domainText = meta->value();
@@ -167,6 +167,9 @@ LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& gri
     if (!domainText.empty() && !model.domainRecorded)
         message(ctx, MessageLevel::Warning,
                 path + ": metadata " + kDomainKey + " \"" + domainText + "\" is not i,j,k,I,J,K; ignored");
+    const openvdb::Vec3d zero = grid->worldToIndex(given->indexToWorld(openvdb::Coord(0)));
+    const Index3 moved = fromCoord(openvdb::Coord::round(zero));
+    model.domain = {model.domain.min + moved, model.domain.max + moved};
     const FieldKind kind = kindOf(*grid, ctx);
     const bool asFog = kind == FieldKind::Density;
     if (asFog && !options.iso)
@@ -191,6 +194,9 @@ LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& gri
         message(ctx, MessageLevel::Note,
                 path + ": voxels are not cubes; resampled to " + std::to_string(smallest));
         const auto transform = openvdb::math::Transform::createLinearTransform(smallest);
+        const Vec3d middle = fromVec(grid->indexToWorld(grid->evalActiveVoxelBoundingBox().getCenter()));
+        if (std::max({std::abs(middle.x), std::abs(middle.y), std::abs(middle.z)}) > kFarVoxels * smallest)
+            transform->postTranslate(toVec(wholeVoxels(middle, smallest).voxels * smallest));
         if (asFog) grid = insideOut(*grid, *options.iso);
         grid = rebuiltBy(*grid, *transform, path, ctx);
         model.domainRecorded = false;
@@ -205,7 +211,21 @@ LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& gri
     return model;
 }
 
-LevelSet resampled(const LevelSet& model, double voxelSize, const RunContext& ctx) {
+namespace {
+
+// Of the model's surface, in the voxels of what it was resampled to.
+void requireResampledKept(const LevelSet& model, openvdb::FloatGrid& grid, const std::string& name,
+                          const RunContext& ctx) {
+    const double ratio = voxelSizeOf(*model.grid) / voxelSizeOf(grid);
+    if (ratio >= 1) return;  // finer voxels keep everything
+    Mesh mesh = zeroLevelInIndexSpace(*model.grid, 0, ctx);
+    for (Vec3f& p : mesh.points) p = p * float(ratio);
+    requireKept(mesh, grid, name, ctx);
+}
+
+}  // namespace
+
+LevelSet resampled(const LevelSet& model, double voxelSize, const RunContext& ctx, const std::string& name) {
     requireModel(&model, "the model", ctx);
     requireOption(voxelSize > 0 && voxelSize < 1e30, "voxelSize", roundedText(voxelSize, 6),
                   "above 0 (world)");
@@ -219,8 +239,10 @@ LevelSet resampled(const LevelSet& model, double voxelSize, const RunContext& ct
     // Scaled in index space: the transform keeps its rotation and origin.
     const openvdb::math::Transform::Ptr transform = model.grid->transform().copy();
     transform->preScale(1 / ratio);
-    result.grid = rebuiltBy(*model.grid, *transform, "resampling", ctx);
+    result.grid =
+        rebuiltBy(*model.grid, *transform, name + ": in voxels of " + roundedText(voxelSize, 4) + " it", ctx);
     throwIfCancelled(ctx);
+    requireResampledKept(model, *result.grid, name, ctx);
     result.domain = solidBox(*result.grid, "the model in voxels of " + std::to_string(voxelSize));
     if (model.domainRecorded) {
         for (int axis = 0; axis < 3; ++axis) {

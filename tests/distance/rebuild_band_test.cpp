@@ -145,3 +145,96 @@ TEST_CASE("rebuildBand: same bits for any number of threads, and cancel is heard
     CHECK(test::samplesOf(made(test::onThreads(1))) == test::samplesOf(made(test::onThreads(4))));
     CHECK(test::thrownWhenCancelled(made).code == int(ErrorCode::Cancelled));
 }
+
+namespace {
+
+LatticeMap scaled(double factor) {
+    Affine to = kIdentity, from = kIdentity;
+    for (std::size_t i : {0, 5, 10}) {
+        to[i] = factor;
+        from[i] = 1 / factor;
+    }
+    return {to, from};
+}
+
+BrickField resampledBall(double factor, bool keep) {
+    const BrickField field = ball(1);
+    RebuildOptions options;
+    options.voxelSize = float(factor);
+    options.keepDistances = keep;
+    options.band = 3 / float(factor);
+    const int side = int(48 / factor);
+    BrickField all;
+    resampleBand(reading(field), scaled(factor), {{0, 0, 0}, {side, side, side}}, options,
+                 [&](const BrickField& part) {
+                     // The ball's own box is one part at these sizes.
+                     if (part.box().contains(Index3{side / 2, side / 2, side / 2})) all = part;
+                 });
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("resampleBand: distances on a finer and on a coarser lattice", "[distance][oracle]") {
+    for (const double factor : {0.4, 1.0, 1.7, 4.0})
+        for (const bool keep : {false, true}) {
+            const BrickField band = resampledBall(factor, keep);
+            CAPTURE(factor, keep);
+            REQUIRE(!band.box().empty());
+            double farthest = 0;
+            std::size_t wrong = 0;
+            forEachVoxel(band.box(), [&](const Index3& p) {
+                const Vec3d place{p.x * factor - 23.3, p.y * factor - 24.1, p.z * factor - 23.8};
+                const double d = (length(place) - 15) / factor, value = double(band.at(p));
+                if (std::abs(d) > 0.1) wrong += (value < 0) == (d < 0) ? 0 : 1;
+                farthest = std::max(farthest, std::abs(value - std::clamp(d, -3.0, 3.0)));
+            });
+            CHECK(wrong == 0);
+            CHECK(farthest < 0.2);
+        }
+}
+
+TEST_CASE("resampleBand: a closed void stays one", "[distance][hand]") {
+    const BrickField hollow = test::fieldFrom({40, 40, 40}, [](const Index3& p) {
+        const double r = length(Vec3d{p.x - 19.5, p.y - 19.5, p.z - 19.5});
+        return float(std::clamp(std::max(r - 14, 6 - r), -3.0, 3.0));
+    });
+    for (const double factor : {0.5, 2.0, 3.0}) {
+        RebuildOptions options;
+        options.voxelSize = float(factor);
+        double solid = 0;
+        const int side = int(40 / factor);
+        resampleBand(reading(hollow), scaled(factor), {{0, 0, 0}, {side, side, side}}, options,
+                     [&](const BrickField& part) {
+                         forEachVoxel(part.box(), [&](const Index3& p) { solid += part.at(p) < 0 ? 1 : 0; });
+                     });
+        CAPTURE(factor);
+        CHECK(solid * factor * factor * factor == Approx(4.18879 * (14 * 14 * 14 - 6 * 6 * 6)).epsilon(0.03));
+    }
+}
+
+TEST_CASE("resampleBand: the same in parts, and it can be cancelled", "[distance][threads]") {
+    const BrickField field = rod();
+    const auto solidOf = [&](int threads) {
+        RunContext ctx;
+        ctx.threads = threads;
+        RebuildOptions options;
+        options.voxelSize = 0.8f;
+        std::vector<float> values;
+        resampleBand(
+            reading(field), scaled(0.8), {{0, 0, 0}, {300, 30, 30}}, options,
+            [&](const BrickField& part) {
+                forEachVoxel(part.box(), [&](const Index3& p) { values.push_back(part.at(p)); });
+            },
+            ctx);
+        return values;
+    };
+    CHECK(solidOf(1) == solidOf(4));
+    std::atomic<bool> stop{true};
+    RunContext stopped;
+    stopped.cancel = &stop;
+    CHECK(test::thrownBy([&] {
+              resampleBand(
+                  reading(field), scaled(1), field.box(), {}, [](const BrickField&) {}, stopped);
+          }).code == int(ErrorCode::Cancelled));
+}

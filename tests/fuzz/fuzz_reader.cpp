@@ -3,7 +3,7 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/readers/gzip.h"
 #include "libvdbsynth/io/readers/mesh_readers.h"
-#include "libvdbsynth/io/readers/point_readers.h"
+#include "libvdbsynth/io/points/point_readers.h"
 #include "libvdbsynth/io/readers/raster_readers.h"
 
 #include <cstddef>

@@ -59,7 +59,7 @@ TEST_CASE("restoreCreases: a cut corner comes back, a closed mesh stays closed",
             return p.z == 0 ? corner : p.y == 0 ? corner + 1 : corner + 2;
         };
         const std::uint32_t fan[5] = {on(r[3]), on(r[1]), r[1], r[2], r[3]};
-        appendPolygon(mesh, fan, 5);
+        for (int i = 1; i < 4; ++i) mesh.triangles.push_back({fan[0], fan[i], fan[i + 1]});
     }
     mesh.quads = quads;
     mesh.triangles.push_back({corner, corner + 2, corner + 1});

@@ -29,18 +29,6 @@ TEST_CASE("summarize: a missing face leaves four open edges, a flipped one four 
     CHECK(summarize(fan).nonManifoldEdges == 1);
 }
 
-TEST_CASE("appendPolygon: three, four and more corners, fewer are no face", "[geometry][degenerate]") {
-    Mesh mesh;
-    const std::uint32_t corners[] = {0, 1, 2, 3, 4};
-    appendPolygon(mesh, corners, 2);
-    CHECK(mesh.faceCount() == 0);
-    appendPolygon(mesh, corners, 3);
-    appendPolygon(mesh, corners, 4);
-    appendPolygon(mesh, corners, 5);
-    CHECK(mesh.triangles.size() == 4);
-    CHECK(mesh.quads.size() == 1);
-}
-
 TEST_CASE("triangulated: quads split along the shorter diagonal and keep the volume",
           "[geometry][property]") {
     Mesh mesh = test::boxMesh({0, 0, 0}, {1, 2, 3});

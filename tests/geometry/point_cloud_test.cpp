@@ -63,3 +63,37 @@ TEST_CASE("estimateNormals: fewer points than a plane wants, and all on a line",
     estimateNormals(line);
     for (const Vec3f& n : line.normals) CHECK(length(n) == Approx(1));
 }
+
+TEST_CASE("dropOutliers: points whose squared distance exceeds floats", "[geometry][regression]") {
+    const std::vector<std::vector<Vec3f>> cases{{{1e30f, 0, 0}},
+                                                {{1e20f, 1e20f, 1e20f}},
+                                                {{3e38f, 3e38f, 3e38f}, {-3e38f, -3e38f, -3e38f}},
+                                                {{1e30f, 0, 0}, {1.0001e30f, 0, 0}, {1e30f, 1e26f, 0}},
+                                                {{1e30f, 0, 0}, {0, -1e38f, 0}, {0, 0, 1e20f}},
+                                                {{0, 0, 1e12f}, {0, 0, 1e10f}}};
+    for (const std::vector<Vec3f>& far : cases) {
+        PointCloud cloud = ball(10);
+        const std::vector<Vec3f> before = cloud.points;
+        cloud.points.insert(cloud.points.begin() + 3, far.begin(), far.end());
+        CAPTURE(far.size(), far[0].x);
+        CHECK(dropOutliers(cloud) == far.size());
+        REQUIRE(cloud.points.size() == before.size());
+        for (std::size_t i = 0; i < before.size(); ++i) REQUIRE(length(cloud.points[i] - before[i]) == 0);
+    }
+}
+
+TEST_CASE("dropOutliers, estimateNormals: clouds of any size", "[geometry][property]") {
+    PointCloud plain = ball(8);
+    estimateNormals(plain);
+    for (const int power : {-110, -60, 60, 120}) {
+        CAPTURE(power);
+        PointCloud cloud = ball(8);
+        for (Vec3f& p : cloud.points) p = p * std::ldexp(1.f, power);
+        estimateNormals(cloud);
+        for (std::size_t i = 0; i < cloud.points.size(); ++i)
+            REQUIRE(length(cloud.normals[i] - plain.normals[i]) < 1e-3f);
+        cloud.points.push_back({std::ldexp(100.f, power), 0, 0});
+        cloud.normals.emplace_back();
+        CHECK(dropOutliers(cloud) == 1);
+    }
+}

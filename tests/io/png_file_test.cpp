@@ -3,8 +3,11 @@
 #include <catch2/catch.hpp>
 
 #include "libvdbsynth/io/raster_file.h"
+#include "libvdbsynth/io/readers/raster_readers.h"
 #include "tests/support/makers.h"
+#include "tests/support/said.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tiff_maker.h"
 
 using namespace vdbsynth;
 
@@ -64,4 +67,26 @@ TEST_CASE("writePng: a path that cannot be written, and a picture of no pixels",
     CHECK(test::thrownBy([&] { writePng(folder.path(""), noise(2, 2)); }).code == int(ErrorCode::Io));
     CHECK(test::thrownBy([&] { writePng(folder.path("a.png"), Picture()); }).code == int(ErrorCode::Io));
     CHECK(test::thrownBy([&] { encodePng(Picture()); }).code == int(ErrorCode::Memory));
+}
+
+TEST_CASE("readPng: turned upright as its EXIF chunk says, before the pixels or behind them",
+          "[io][regression]") {
+    const std::string plain = encodePng({2, 1, {10, 10, 10, 20, 20, 20}});
+    // Length, name, EXIF with one entry, and a checksum: libpng leaves out a chunk whose checksum is wrong.
+    test::TiffMaker maker;
+    maker.bigEndian = true;
+    const std::string exif = "MM" + maker.number(42, 2) + maker.number(8, 4) + maker.number(1, 2) +
+                             maker.number(274, 2) + maker.number(3, 2) + maker.number(1, 4) +
+                             maker.number(3, 2) + maker.number(0, 6);
+    const std::string chunk = maker.number(exif.size(), 4) + "eXIf" + exif + maker.number(0, 4);
+    for (const std::size_t at : {plain.find("IEND") - 4, plain.find("IDAT") - 4}) {
+        test::Said said;
+        const Raster raster = readPng("a.png", std::string(plain).insert(at, chunk), {}, said.ctx);
+        CHECK(raster.values == std::vector<float>{20, 20, 20, 10, 10, 10});
+        CHECK(said.all() == "a.png: turned upright as its EXIF orientation 3 says\n");
+    }
+    // A chunk that claims more than there is, and damaged EXIF.
+    for (const std::string& odd :
+         {maker.number(0xffffffff, 4) + "eXIf", maker.number(4, 4) + "eXIfMM" + maker.number(0, 6)})
+        CHECK(readPng("a.png", plain + odd, {}, {}).values.front() == 10);
 }

@@ -190,3 +190,18 @@ TEST_CASE("heightField, topHeights: same bits for any number of threads, and can
     CHECK(test::thrownWhenCancelled(made).code == int(ErrorCode::Cancelled));
     CHECK(test::thrownWhenCancelled(top).code == int(ErrorCode::Cancelled));
 }
+
+TEST_CASE("heightField: details smaller than a voxel are counted as lost", "[raster][hand]") {
+    // 64 x 64 pixels, a spike of 30 on each eighth pixel of every eighth row, or none.
+    Raster raster;
+    raster.size = {64, 64, 1};
+    raster.values.assign(64 * 64, 1.f);
+    HeightOptions options;
+    options.voxelSize = 4;
+    CHECK(heightField("flat", raster, options).lostShare == 0);
+    for (int y = 4; y < 64; y += 8)
+        for (int x = 4; x < 64; x += 8) raster.values[raster.index(x, y, 0)] = 30;
+    CHECK(heightField("spikes", raster, options).lostShare == Approx(1.0 / 64));
+    options.voxelSize = 1;
+    CHECK(heightField("spikes", raster, options).lostShare == 0);
+}

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/support/makers.h"
+
 using namespace vdbsynth;
 
 namespace {
@@ -62,4 +64,44 @@ TEST_CASE("rangeOf: more than 256 values are not listed, and nothing but missing
     const RasterRange none = rangeOf(grey({2, 1, 1}, {std::nanf(""), std::nanf("")}));
     CHECK(none.missing == 2);
     CHECK(none.distinct.empty());
+}
+
+TEST_CASE("requirePixelSize: one size or one for each axis", "[raster][error]") {
+    const auto refused = [](double size, const Vec3d& sides) {
+        return test::thrownBy([&] { requirePixelSize(size, sides); });
+    };
+    CHECK(refused(0, {0, 0, 0}).code == -1);
+    CHECK(refused(2, {0, 0, 0}).code == -1);
+    CHECK(refused(0, {1, 2, 0}).code == -1);
+    CHECK(refused(0, {1, 2, 3}).code == -1);
+    for (const Vec3d& sides : {Vec3d{1, 0, 0},
+                               {0, 1, 0},
+                               {0, 0, 1},
+                               {1, 0, 1},
+                               {-1, 1, 1},
+                               {1, 1, -1},
+                               {1, 1e31, 1},
+                               {std::nan(""), 1, 1}}) {
+        const test::Thrown thrown = refused(0, sides);
+        CHECK(thrown.code == int(ErrorCode::InvalidOption));
+        CHECK(test::contains(thrown.message, "`pixelSize`"));
+    }
+    CHECK(test::contains(refused(2, {1, 1, 1}).message, "not both"));
+}
+
+TEST_CASE("cellSides: the file's, by the smallest side, or each as given", "[raster][oracle]") {
+    Raster raster;
+    raster.spacing = {2, 4, 1};
+    CHECK(length(cellSides("a", raster, false, 0, {}) - Vec3d{2, 4, 1}) == 0);
+    CHECK(length(cellSides("a", raster, false, 3, {}) - Vec3d{6, 12, 3}) == 0);
+    CHECK(length(cellSides("a", raster, false, 0, {10, 10, 30}) - Vec3d{10, 10, 30}) == 0);
+    CHECK(length(cellSides("a", raster, true, 3, {}) - Vec3d{3, 6, 1}) == 0);
+    CHECK(length(cellSides("a", raster, true, 0, {5, 7, 0}) - Vec3d{5, 7, 1}) == 0);
+    for (const bool image : {true, false}) {
+        const test::Thrown thrown = test::thrownBy([&] {
+            cellSides("a", raster, image, 0, {1, 1, image ? 1.0 : 0.0});
+        });
+        CHECK(thrown.code == int(ErrorCode::InvalidOption));
+        CHECK(test::contains(thrown.message, image ? "a is an image" : "a is a volume"));
+    }
 }

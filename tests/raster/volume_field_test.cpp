@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "libvdbsynth/math/trigonometry.h"
 #include "tests/support/contexts.h"
 #include "tests/support/raster_fields.h"
 
@@ -38,6 +39,39 @@ TEST_CASE("volumeField: cells that are no cubes are resampled to their smallest 
     CHECK(result.domain.size() == Index3{20, 20, 21});
     CHECK(crossing(result.field, {10, 10, 10}, 2) == Approx(16).margin(0.15));
     CHECK(crossing(result.field, {10, 10, 10}, 0) == Approx(16).margin(0.01));
+}
+
+TEST_CASE(
+    "volumeField: sheared cells are resampled to cubes at right angles, where there are none is outside",
+    "[raster][oracle]") {
+    // A ball in samples whose slices are shifted along x by half a sample each, as a tilted gantry does.
+    const double c = std::sqrt(0.8), s = std::sqrt(0.2);
+    Raster raster = rasterOf({40, 40, 40}, [&](int x, int y, int z) {
+        const double wx = x + 0.5 * z - 30, wy = y - 20, wz = z - 20;
+        return float(20 - std::sqrt(wx * wx + wy * wy + wz * wz));
+    });
+    raster.axes = {{{1, 0, 0}, {0, 1, 0}, {s, 0, c}}};
+    raster.spacing = {1, 1, 1 / c};
+    VolumeOptions options;
+    options.threshold = 8;
+    const RasterField result = volumeField("a", raster, options);
+    CHECK(test::contains(result.description, "not at right angles"));
+    CHECK(result.voxelSize == 1);
+    double worst = 0;
+    int inside = 0;
+    forEachVoxel(result.domain, [&](const Index3& p) {
+        const Vec3d at = result.axes[0] * double(p.x) + result.axes[1] * double(p.y) +
+                         result.axes[2] * double(p.z) - Vec3d{30, 20, 20};
+        const bool solid = result.field.at(p) < 0;
+        inside += solid ? 1 : 0;
+        if (solid != (length(at) < 12)) worst = std::max(worst, std::abs(length(at) - 12));
+    });
+    CHECK(worst < 0.1);
+    CHECK(inside == Approx(4.0 / 3 * kPi * 12 * 12 * 12).epsilon(0.01));
+    // A whole block of solid samples ends half a voxel beyond them, not at the box around them.
+    options.threshold = -1000;
+    raster.values[0] = -2000;
+    CHECK(volumeField("a", raster, options).field.at(result.domain.min) > 0);
 }
 
 TEST_CASE("volumeField: smoothed labels keep every sample's side and make slopes of stairs",

@@ -46,6 +46,8 @@ TEST_CASE("normalValue: one form however it was typed", "[tools]") {
     CHECK(normal("convert", "seed", "18446744073709551615") == "18446744073709551615");
     CHECK(normal("convert", "max-memory", "1.5G") == "1500000000");
     CHECK(normal("convert", "as", "points") == "points");
+    CHECK(normal("convert", "pixel-size", "2.0") == "2");
+    CHECK(normal("convert", "pixel-size", "1e1,10,30.0") == "10,10,30");
 }
 
 TEST_CASE("normalValue: how standard input is read makes no other result", "[tools]") {
@@ -142,4 +144,11 @@ TEST_CASE("splitGridPath: a grid's name follows the extension", "[tools]") {
     CHECK(namesGrid("a.VDB"));
     CHECK_FALSE(namesGrid("a.ply"));
     CHECK_FALSE(namesGrid(""));
+}
+
+TEST_CASE("normalValue: a pixel size is one to three numbers above 0", "[tools][error]") {
+    CHECK(normal("convert", "pixel-size", "2,3") == "2,3");
+    for (const char* value : {"", "0", "1,0", "1,2,3,4", "1,,2", "a", "1,-1", "1,2,", "nan", "1,1e31"})
+        CHECK(test::contains(refusal("convert", "pixel-size", value),
+                             "one to three numbers above 0, with commas"));
 }

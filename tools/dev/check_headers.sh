@@ -21,6 +21,6 @@ check() {
   rm -f "$dependencies"
 }
 export -f check
-# Those left out are openly OpenVDB's, helpers inside vdb/, and TBB's.
-find libvdbsynth -name '*.h' | sort | grep -vE 'vdb/(coord|grid_kinds|wall|convert/trilinear)\.h|base/parallel_sort\.h' | xargs -P "$(nproc)" -I{} bash -c 'check {}'
+# Those left out are openly OpenVDB's, helpers inside vdb/, TBB's, and the JSON of one reader.
+find libvdbsynth -name '*.h' | sort | grep -vE 'vdb/(coord|grid_kinds|wall|convert/trilinear)\.h|base/parallel_sort\.h|io/readers/mesh_readers_gltf_steps\.h' | xargs -P "$(nproc)" -I{} bash -c 'check {}'
 echo "every header compiles alone"

@@ -9,10 +9,10 @@ import sys
 BELOW = {}
 for room, direct in [
     ("base", []), ("math", ["base"]), ("geometry", ["math"]), ("grid", ["geometry"]),
-    ("distance", ["grid"]), ("raster", ["distance"]), ("map", ["grid"]),
+    ("distance", ["grid"]), ("solid", ["distance"]), ("raster", ["distance"]), ("map", ["grid"]),
     ("io", ["raster"]), ("procedural", ["distance"]), ("surface", ["grid"]), ("search", ["io"]),
     ("synth", ["search", "map"]), ("analogy", ["search", "surface", "map"]), ("measure", ["distance", "synth"]),
-    ("vdb", ["io", "map", "distance"]), ("render", ["vdb"]),
+    ("vdb", ["io", "map", "solid"]), ("render", ["vdb"]),
     ("pipeline", ["measure", "synth", "analogy", "procedural", "render"]), ("tools", ["pipeline"]),
 ]:
     BELOW[room] = {room}.union(*[BELOW[d] for d in direct]) if direct else {room}
@@ -20,7 +20,7 @@ for room, direct in [
 # Which rooms may see which third party.
 ALLOWED = {
     "openvdb/": {"vdb", "render", "pipeline"}, "tbb/": {"base"}, "xxhash.h": {"base"}, "png.h": {"io"},
-    "tiny_obj_loader.h": {"io"}, "tiffio.h": {"io"}, "jpeglib.h": {"io"}, "Imf": {"io"}, "pugixml.hpp": {"io"}, "tiny_gltf.h": {"io"}, "zlib.h": {"io"}, "nanoflann.hpp": {"geometry"}, "flann/": {"search"}, "Eigen/": {"math", "geometry"}, "boost/graph/": {"math"}, "boost/program_options": {"tools"}, "nlohmann/": {"tools"},
+    "tiny_obj_loader.h": {"io"}, "tiffio.h": {"io"}, "jpeglib.h": {"io"}, "Imf": {"io"}, "pugixml.hpp": {"io"}, "tiny_gltf.h": {"io"}, "zlib.h": {"io"}, "nanoflann.hpp": {"geometry"}, "flann/": {"search"}, "Eigen/": {"math", "geometry"}, "boost/graph/": {"math"}, "boost/program_options": {"tools"}, "nlohmann/": {"io", "tools"},
 }
 ONE_FILE = {"png.h", "zlib.h", "nanoflann.hpp", "flann/", "tiny_obj_loader.h", "tiffio.h", "jpeglib.h", "Imf", "pugixml.hpp", "tiny_gltf.h", "xxhash.h", "boost/graph/", "boost/program_options"}
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that are missing. Usage: packages.sh build|test|bench|all
 set -euo pipefail
-build=(g++ cmake ninja-build ccache libopenvdb-dev libboost-iostreams-dev libtbb-dev libflann-dev liblz4-dev libboost-program-options-dev libtinyobjloader-dev
+build=(g++ cmake ninja-build ccache libopenvdb-dev libboost-iostreams-dev libtbb-dev libflann-dev liblz4-dev libboost-program-options-dev
        nlohmann-json3-dev libeigen3-dev libnanoflann-dev libjpeg62-turbo-dev libkissfft-dev libopenexr-dev libpng-dev libpugixml-dev
        libtiff-dev libtinygltf-dev libxxhash-dev zlib1g-dev)
 test=(catch2 python3 procps)

@@ -6,7 +6,9 @@
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/point_file.h"
 #include "libvdbsynth/io/raster_file.h"
-#include "libvdbsynth/vdb/read/surface_bounds.h"
+#include "libvdbsynth/raster/raster_alignment.h"
+#include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
+#include "tools/vdb_synth/surface_json.h"
 
 #include <nlohmann/json.hpp>
 
@@ -29,36 +31,38 @@ Json meshInfo(const std::string& path, const Run& run) {
     // Vertices that a texture seam splits are one point of the surface.
     if (findAttribute(mesh.attributes, "uv")) weldVertices(mesh);
     const MeshSummary s = summarize(mesh);
-    return Json{{"file", run.withoutTemporaries(path)},
-                {"kind", "mesh"},
-                {"vertices", s.vertices},
-                {"faces", s.faces},
-                {"bounds_min", triple(s.boxMin)},
-                {"bounds_max", triple(s.boxMax)},
-                {"area", s.area},
-                {"signed_volume", s.signedVolume},
-                {"open_edges", s.openEdges},
-                {"non_manifold_edges", s.nonManifoldEdges},
-                {"misoriented_edges", s.misorientedEdges},
-                {"closed_manifold", s.closedManifold()}};
+    Json json{{"file", run.withoutTemporaries(path)},
+              {"kind", "mesh"},
+              {"vertices", s.vertices},
+              {"faces", s.faces}};
+    json.update(surfaceJson(mesh, run.context));
+    json.update(Json{{"open_edges", s.openEdges},
+                     {"non_manifold_edges", s.nonManifoldEdges},
+                     {"misoriented_edges", s.misorientedEdges},
+                     {"closed_manifold", s.closedManifold()}});
+    return json;
 }
 
 Json pointsInfo(const std::string& path, const Run& run) {
     const PointFile file = readPoints(path, run.context);
+    const Vec3d& origin = file.cloud.origin;
     Vec3f low = file.cloud.points.front(), high = low;
     for (const Vec3f& p : file.cloud.points)
         for (int axis = 0; axis < 3; ++axis) {
             low[axis] = std::min(low[axis], p[axis]);
             high[axis] = std::max(high[axis], p[axis]);
         }
-    return Json{{"file", run.withoutTemporaries(path)},    {"kind", "points"},
-                {"points", file.cloud.points.size()},      {"invalid_points", file.invalid},
-                {"normals", !file.cloud.normals.empty()},  {"bounds_min", triple(cast<double>(low))},
-                {"bounds_max", triple(cast<double>(high))}};
+    return Json{{"file", run.withoutTemporaries(path)},
+                {"kind", "points"},
+                {"points", file.cloud.points.size()},
+                {"invalid_points", file.invalid},
+                {"normals", !file.cloud.normals.empty()},
+                {"bounds_min", triple(origin + cast<double>(low))},
+                {"bounds_max", triple(origin + cast<double>(high))}};
 }
 
 Json rasterInfo(const std::string& path, const Run& run) {
-    const Raster raster = readRaster(path, run.context);
+    const Raster raster = readRaster(path, {run.arguments.text("grid")}, run.context);
     const RasterRange range = rangeOf(raster);
     Json info{{"file", run.withoutTemporaries(path)},
               {"kind", raster.stack || raster.size.z > 1 ? "volume" : "image"},
@@ -71,9 +75,13 @@ Json rasterInfo(const std::string& path, const Run& run) {
               {"distinct_values", range.distinct.empty() ? Json("over 256") : Json(range.distinct.size())},
               {"samples_without_data", range.missing},
               {"infinite_samples", range.infinite}};
+    if (raster.arrays.size() > 1) info["arrays"] = raster.arrays;
     if (raster.knownSpacing) {
         info["spacing"] = triple(raster.spacing);
         info["origin"] = triple(raster.origin);
+        if (!runAlongWorld(raster.axes))
+            info["axes"] =
+                Json::array({triple(raster.axes[0]), triple(raster.axes[1]), triple(raster.axes[2])});
         info["unit"] = raster.unit.empty() ? Json(nullptr) : Json(raster.unit);
     }
     return info;
@@ -118,12 +126,10 @@ Json vdbInfo(const std::string& path, Run& run) {
         if (run.arguments.has("iso")) read.iso = run.arguments.real("iso");
         const LevelSet model = modelFromGrids(path, contents.grids, read, run.context);
         const BandQuality quality = measureBand(*model.grid, run.context);
-        const WorldBox bounds = surfaceBounds(*model.grid, run.context);
-        info["model"] = Json{
+        info["model"] = surfaceJson(levelSetToMesh(*model.grid, {}, run.context), run.context);
+        info["model"].update(Json{
             {"voxel_size", voxelSizeOf(*model.grid)},
             {"half_width", halfWidthOf(*model.grid)},
-            {"bounds_min", triple(bounds.min)},
-            {"bounds_max", triple(bounds.max)},
             {"domain", boxText(model.domain)},
             {"domain_recorded", model.domainRecorded},
             {"solid_voxels", solidVoxels(*model.grid)},
@@ -131,7 +137,7 @@ Json vdbInfo(const std::string& path, Run& run) {
             {"gradient_error_mean", quality.gradientErrorMean},
             {"gradient_error_p99", quality.gradientErrorP99},
             {"band_gaps", quality.missingNeighbours},
-            {"valid", quality.finite && quality.gradientErrorMean < 0.15 && quality.missingNeighbours == 0}};
+            {"valid", quality.finite && quality.gradientErrorMean < 0.15 && quality.missingNeighbours == 0}});
     } catch (const Error& error) {
         if (error.code() == ErrorCode::Cancelled) throw;
         info["model"] = nullptr;

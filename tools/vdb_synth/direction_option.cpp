@@ -57,7 +57,7 @@ std::vector<Stroke> strokesOfPoints(const std::string& path, const RunContext& c
         throw Error(ErrorCode::BadData, path + ": its points have no normals, which give the directions");
     std::vector<Stroke> strokes;
     for (std::size_t i = 0; i < cloud.points.size(); ++i)
-        strokes.push_back({cast<double>(cloud.points[i]), cast<double>(cloud.normals[i])});
+        strokes.push_back({cloud.origin + cast<double>(cloud.points[i]), cast<double>(cloud.normals[i])});
     return strokes;
 }
 

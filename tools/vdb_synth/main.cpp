@@ -2,6 +2,7 @@
 #include "tools/vdb_synth/version.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/printable_text.h"
 #include "tools/vdb_synth/options.h"
 
 #include <algorithm>
@@ -30,8 +31,7 @@ std::string overview() {
 }
 
 int fail(const Error& error, const std::string& command) {
-    std::string text = inFlags(error.what(), command);
-    std::replace(text.begin(), text.end(), '\n', ' ');
+    const std::string text = printableText(inFlags(error.what(), command));
     std::fprintf(stderr, "vdb_synth%s%s: error: %s\n", command.empty() ? "" : " ", command.c_str(),
                  text.c_str());
     if (error.code() == ErrorCode::Cancelled && stopSignal()) return 128 + stopSignal();

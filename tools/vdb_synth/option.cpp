@@ -98,8 +98,9 @@ bool writesPath(const Option& option) {
 }
 
 std::string rangeText(const Option& option) {
-    const bool numbers = option.kind == Kind::Whole || option.kind == Kind::Real ||
-                         option.kind == Kind::WholeTriple || option.kind == Kind::Pixels;
+    const bool numbers = option.kind == Kind::Whole || option.kind == Kind::Lengths ||
+                         option.kind == Kind::Real || option.kind == Kind::WholeTriple ||
+                         option.kind == Kind::Pixels;
     if (option.kind == Kind::Bytes) return "at least 1M";
     if (!numbers || (option.low <= -kUnbounded && option.high >= kUnbounded)) return "";
     if (option.low == -kFarVoxel) return "";
@@ -121,6 +122,8 @@ std::string allowedText(const Option& option) {
             return allowedNumber(option, option.odd ? "an odd number" : "a whole number");
         case Kind::Real:
             return allowedNumber(option, "a number");
+        case Kind::Lengths:
+            return allowedNumber(option, "one to three numbers") + ", with commas, for example 10,10,30";
         case Kind::Seed:
             return "a whole number from 0 to 18446744073709551615";
         case Kind::Bytes:

@@ -14,6 +14,7 @@ enum class Kind {
     Axes,         ///< "xy", or "none"
     Whole,        ///< a whole number from `low` to `high`, odd where `odd` is set
     Real,         ///< a number from `low` to `high`
+    Lengths,      ///< one to three numbers with commas, each from `low` to `high`
     Seed,         ///< a whole number of up to 64 bits
     Bytes,        ///< at least 1M, with an optional K, M, G or T (powers of 1000)
     Triple,       ///< three numbers with commas

@@ -156,6 +156,12 @@ Index3 Arguments::wholeTriple(const std::string& name) const {
     return parts;
 }
 
+std::vector<double> Arguments::lengths(const std::string& name) const {
+    std::vector<double> lengths;
+    if (has(name)) readLengths(text(name), lengths);
+    return lengths;
+}
+
 std::pair<double, double> Arguments::range(const std::string& name) const {
     std::pair<double, double> ends{0, 0};
     readRange(text(name), ends.first, ends.second);

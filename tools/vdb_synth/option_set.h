@@ -41,6 +41,7 @@ public:
     int whole(const std::string& name) const;
     double real(const std::string& name) const;
     std::uint64_t wide(const std::string& name) const;  ///< Seed, Bytes
+    std::vector<double> lengths(const std::string& name) const;
     std::array<double, 3> triple(const std::string& name) const;
     Index3 wholeTriple(const std::string& name) const;
     std::pair<double, double> range(const std::string& name) const;

@@ -87,6 +87,13 @@ std::string normalNumbers(const Option& option, const std::string& given) {
     if (option.kind == Kind::Range) {
         if (!readRange(given, low, high)) refuseValue(option, given);
         parts = {exactText(low), exactText(high)};
+    } else if (option.kind == Kind::Lengths) {
+        std::vector<double> lengths;
+        if (!readLengths(given, lengths)) refuseValue(option, given);
+        for (double length : lengths) {
+            if (!within(option, length)) refuseValue(option, given);
+            parts.push_back(exactText(length));
+        }
     } else if (option.kind == Kind::Triple) {
         if (!readTriple(given, triple)) refuseValue(option, given);
         for (double value : triple) parts.push_back(exactText(value));
@@ -232,6 +239,7 @@ std::string normalValue(const Option& option, const std::string& given) {
             return normalPixels(option, given);
         case Kind::Labels:
             return normalLabels(option, given);
+        case Kind::Lengths:
         case Kind::Triple:
         case Kind::WholeTriple:
         case Kind::Range:

@@ -35,6 +35,7 @@ bool readWhole(const std::string& text, long long& value);
 bool readReal(const std::string& text, double& value);
 bool readSeed(const std::string& text, std::uint64_t& value);
 bool readBytes(const std::string& text, std::uint64_t& value);
+bool readLengths(const std::string& text, std::vector<double>& lengths);
 bool readTriple(const std::string& text, std::array<double, 3>& values);
 bool readWholeTriple(const std::string& text, Index3& values);
 bool readRange(const std::string& text, double& low, double& high);

@@ -51,15 +51,21 @@ std::vector<Option> inputTable() {
             .takenBy({"analogy"}),
         option(Kind::Text, "grid", "NAME")
             .in(Group::Input)
-            .says("which grid of a VDB file")
-            .otherwiseIs("surface, else the first level set, else with --iso a fog volume")
+            .says("which grid of a VDB file, or array, channel or frame of a volume or image")
+            .otherwiseIs(
+                "surface, else the first level set, else with --iso a fog volume; of images the first")
             .sets({"grid", "gridName"})
             .takenBy(with(kModel, {"info"}))
-            .butFor("analogy", [](Option& o) { o.says("which grid of B, where it is a VDB file"); }),
+            .butFor("analogy", [](Option& o) { o.says("which grid or array of B"); }),
         real("iso", "VALUE")
             .in(Group::Input)
             .says("a fog volume is solid above this value")
             .takenBy(with(kModel, {"info"})),
+        real("unit-scale", "S", 1e-12, 1e12)
+            .in(Group::Input)
+            .says("multiplies the file's coordinates: 1000 reads metres as millimetres")
+            .initially("1")
+            .takenBy(kModel),
         choice("open", "KIND", {{"close", ""}, {"shell", "of --thickness around its faces or points"}})
             .in(Group::Input)
             .says("how to treat input that is not watertight")
@@ -84,10 +90,14 @@ std::vector<Option> inputTable() {
 
 std::vector<Option> rasterTable() {
     return {
-        worldLength("pixel-size", "P")
+        option(Kind::Lengths, "pixel-size", "P[,Y[,Z]]")
+            .from(kAboveZero, kUnbounded)
+            .measuredIn(Unit::World)
             .in(Group::Raster)
-            .says("side of an image's pixel, or of a volume's smallest cell")
+            .says("side of an image's pixel or of a volume's smallest cell; with commas along columns, rows "
+                  "and, for volumes, slices")
             .otherwiseIs("the file's, else 1")
+            .sets({"pixelSize", "pixelSides"})
             .takenBy(kModel),
         worldLength("height", "H")
             .in(Group::Raster)

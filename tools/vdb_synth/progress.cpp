@@ -1,5 +1,7 @@
 #include "tools/vdb_synth/progress.h"
 
+#include "libvdbsynth/base/printable_text.h"
+
 #include <nlohmann/json.hpp>
 
 #include <cstdio>
@@ -50,8 +52,8 @@ void ProgressLog::draw(const Progress& progress) {
     constexpr int kWidth = 30;
     std::string bar(kWidth, ' ');
     for (int i = 0; i < int(fraction * kWidth); ++i) bar[std::size_t(i)] = '#';
-    std::fprintf(stderr, "\r\033[K[%s] %3d %% %.60s", bar.c_str(), int(fraction * 100),
-                 progress.stage.c_str());
+    std::fprintf(stderr, "\r\033[K[%s] %3d %% %s", bar.c_str(), int(fraction * 100),
+                 printableText(progress.stage.substr(0, 60)).c_str());
     std::fflush(stderr);
     mVisible = true;
 }

@@ -3,9 +3,13 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/hash.h"
 #include "libvdbsynth/base/machine_memory.h"
+#include "libvdbsynth/base/printable_text.h"
 #include "libvdbsynth/io/path.h"
+#include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
+#include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
 #include "tools/vdb_synth/options.h"
 #include "tools/vdb_synth/stop_flag.h"
+#include "tools/vdb_synth/surface_json.h"
 #include "tools/vdb_synth/version.h"
 
 #include <nlohmann/json.hpp>
@@ -88,7 +92,7 @@ Run::Run(const Command& command, Arguments given, const SupervisorLine& line)
         if (level != MessageLevel::Warning && impl.quiet) return;
         impl.progress.clear();
         std::fprintf(stderr, "vdb_synth: %s%s\n", level == MessageLevel::Warning ? "warning: " : "",
-                     inWords(text).c_str());
+                     printableText(inWords(text)).c_str());
     };
     mOutputs = std::make_unique<OutputSet>([&impl](const std::string& path) { impl.line.temporary(path); });
 }
@@ -130,7 +134,11 @@ void Run::requireInputs(std::size_t low, std::size_t high) const {
 namespace {
 
 void readRasterOptions(const Arguments& arguments, ModelOptions& options) {
-    options.heights.pixelSize = options.volume.pixelSize = arguments.real("pixel-size");
+    const std::vector<double> sides = arguments.lengths("pixel-size");
+    if (sides.size() == 1) options.heights.pixelSize = options.volume.pixelSize = sides[0];
+    if (sides.size() > 1)
+        options.heights.pixelSides =
+            options.volume.pixelSides = {sides[0], sides[1], sides.size() > 2 ? sides[2] : 0};
     options.heights.height = arguments.real("height");
     options.heights.base = arguments.real("base");
     const std::string plane = arguments.text("plane");
@@ -161,6 +169,7 @@ ModelOptions Run::modelOptions() const {
                     "--open shell and --thickness W: give both, the thickness of the shell in world units");
     readRasterOptions(arguments, options);
     options.grid = arguments.text("grid");
+    if (arguments.has("unit-scale")) options.unitScale = arguments.real("unit-scale");
     if (arguments.has("iso")) options.iso = arguments.real("iso");
     return options;
 }
@@ -182,8 +191,10 @@ LevelSet Run::load(const std::string& path) {
     return load(path, modelOptions());
 }
 
-LevelSet Run::load(const std::string& path, const ModelOptions& options) {
+LevelSet Run::load(const std::string& path, const ModelOptions& given) {
     reserveOutputs();
+    ModelOptions options = given;
+    if (arguments.has("report")) options.keepSource = true;  // the report compares with it
     LevelSet model = loadModel(path, options, context);
     noteInput(path);
     return model;
@@ -229,6 +240,9 @@ GridPtr Run::loadGrid(const std::string& option, const std::string& text) {
 void Run::describe(const LevelSet& result) {
     count("active_voxels", activeVoxels(*result.grid));
     if (!arguments.has("report")) return;
+    if (result.source) count("input_surface", surfaceJson(*result.source, context));
+    count("surface", surfaceJson(levelSetToMesh(*result.grid, {}, context), context));
+    count("lost_share", lostShare(*result.grid));
     const BandQuality band = measureBand(*result.grid, context);
     mImpl->quality = {{"gradient_error_mean", band.gradientErrorMean},
                       {"gradient_error_p99", band.gradientErrorP99},

@@ -1,6 +1,7 @@
 #include "tools/vdb_synth/supervisor.h"
 
 #include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/base/printable_text.h"
 #include "tools/vdb_synth/stop_flag.h"
 
 #include <algorithm>
@@ -84,23 +85,24 @@ void removeTemporaries(const Child& child) {
 
 int reportDeath(const Child& child, int signal, bool hung) {
     const char* program = "vdb_synth: error: ";
+    const std::string reading = printableText(child.reading);
     if (hung) {
         std::fprintf(
             stderr,
             "%s%s: reading made no progress and was stopped; the file is corrupt or not what its name says\n",
-            program, child.reading.c_str());
+            program, reading.c_str());
         return 3;
     }
     if (signal == SIGKILL) {
         std::fprintf(stderr,
                      "%s%sthe process was killed, most likely out of memory; use larger voxels, a smaller "
                      "size or --max-memory\n",
-                     program, child.reading.empty() ? "" : (child.reading + ": ").c_str());
+                     program, reading.empty() ? "" : (reading + ": ").c_str());
         return 1;
     }
-    if (!child.reading.empty()) {
+    if (!reading.empty()) {
         std::fprintf(stderr, "%s%s: its reader crashed (signal %d); the file is truncated or corrupt\n",
-                     program, child.reading.c_str(), signal);
+                     program, reading.c_str(), signal);
         return 3;
     }
     std::fprintf(stderr,

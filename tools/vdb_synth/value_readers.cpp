@@ -50,6 +50,15 @@ std::vector<std::string> splitAtCommas(const std::string& text) {
     return parts;
 }
 
+bool readLengths(const std::string& text, std::vector<double>& lengths) {
+    for (const std::string& part : splitAtCommas(text)) {
+        double length = 0;
+        if (lengths.size() == 3 || !parseReal(part, length)) return false;
+        lengths.push_back(length);
+    }
+    return !lengths.empty();
+}
+
 bool readTriple(const std::string& text, std::array<double, 3>& values) {
     const std::vector<std::string> parts = splitAtCommas(text);
     if (parts.size() != 3) return false;

@@ -3,6 +3,7 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/geometry/local_points.h"
 
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <utility>
@@ -47,13 +48,27 @@ void dropUnfinite(const std::string& path, MeshContent& content, const RunContex
     for (std::uint32_t& corner : content.polygons.corners) corner = place[corner];
 }
 
+void sayFaces(const std::string& path, const PolygonList& polygons, std::size_t crossing,
+              const RunContext& ctx) {
+    const auto small = std::count_if(polygons.sizes.begin(), polygons.sizes.end(),
+                                     [](std::uint32_t size) { return size < 3; });
+    if (small > 0)
+        message(ctx, MessageLevel::Note,
+                path + ": " + std::to_string(small) + " faces with fewer than three corners left out");
+    if (crossing > 0)
+        message(ctx, MessageLevel::Warning,
+                path + ": " + std::to_string(crossing) + " of " + std::to_string(polygons.sizes.size()) +
+                    " faces cross themselves or are far from flat; their triangles may overlap. "
+                    "Triangulating the mesh in the program that wrote it helps");
+}
+
 }  // namespace
 
 Mesh meshOf(const std::string& path, MeshContent content, const RunContext& ctx) {
     checkCorners(path, content);
     dropUnfinite(path, content, ctx);
     Mesh mesh;
-    appendPolygons(mesh, content.polygons, content.points);
+    sayFaces(path, content.polygons, appendPolygons(mesh, content.polygons, content.points), ctx);
     if (mesh.faceCount() == 0)
         throw Error(ErrorCode::EmptyInput, path + ": no faces; a mesh with at least one face is needed");
     LocalPoints local = localPoints(content.points);

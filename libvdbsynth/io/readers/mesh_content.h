@@ -16,10 +16,11 @@ struct MeshContent {
     Attributes attributes;  ///< of the points
 };
 
-/// A mesh of floats near an origin (geometry/local_points.h). Points without finite coordinates are left out,
-/// with a note.
+/// A mesh of floats near an origin (geometry/local_points.h); polygons become triangles and quads
+/// (geometry/polygon.h). Points without finite coordinates and faces of fewer than three corners are left
+/// out, with a note; faces that cross themselves are a warning.
 /// @throw Error BadData (a corner out of range or without finite coordinates), EmptyInput (no faces)
-/// @par Cost    O(points + corners)   @par Repeats yes
+/// @par Cost    O(points) and that of appendPolygons   @par Repeats yes
 Mesh meshOf(const std::string& path, MeshContent content, const RunContext& ctx);
 
 }  // namespace vdbsynth

@@ -1,105 +1,204 @@
-// STL, ascii and binary. A binary file may begin with "solid" too, so the size decides.
+// STL. Binary: a header of 80 bytes, a count, records of 50 bytes. Counts and headers are often wrong, so the
+// size of the file and what stands in the records decide.
 #include "libvdbsynth/base/error.h"
-#include "libvdbsynth/base/hash.h"
+#include "libvdbsynth/io/readers/facet_soup.h"
 #include "libvdbsynth/io/readers/mesh_readers.h"
-#include "libvdbsynth/io/readers/text_scanner.h"
+#include "libvdbsynth/io/readers/stl_text.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <unordered_map>
 
 namespace vdbsynth {
 namespace {
 
-struct PointHash {
-    std::size_t operator()(const Vec3f& p) const { return std::size_t(hash64(&p, sizeof p)); }
-};
-struct PointEqual {
-    bool operator()(const Vec3f& a, const Vec3f& b) const { return std::memcmp(&a, &b, sizeof a) == 0; }
-};
+constexpr std::uint64_t kHeader = 84, kRecord = 50;
+constexpr std::uint32_t kUnknownCount = 0xFFFFFFFF;  // of writers that could not go back to fill it in
 
-// Gives corners with the same bits one vertex.
-class Welder {
+std::string triangles(std::uint64_t count) {
+    return std::to_string(count) + " triangle" + (count == 1 ? "" : "s");
+}
+
+// A binary file: numbers at places, in the byte order that the file has.
+class Binary {
 public:
-    explicit Welder(MeshContent& mesh) : mMesh(mesh) {}
-    std::uint32_t add(Vec3f p) {
-        for (int axis = 0; axis < 3; ++axis) p[axis] += 0.f;  // -0 becomes +0
-        const auto [it, isNew] = mSeen.emplace(p, std::uint32_t(mMesh.points.size()));
-        if (isNew) mMesh.points.push_back(cast<double>(p));
-        return it->second;
+    explicit Binary(const std::string& content) : mContent(content), mBigEndian(false) {
+        // Floats of the wrong order are mostly too small or too large for any model.
+        const std::uint64_t sample = std::min<std::uint64_t>(room(), 1000);
+        const std::uint64_t strangeLittle = strange(sample);
+        mBigEndian = true;
+        const bool fits = count() <= room();
+        mBigEndian = fits && strangeLittle > 4 * strange(sample);
+    }
+
+    bool bigEndian() const { return mBigEndian; }
+    std::uint32_t count(std::uint64_t block = 0) const { return word(block + 80); }
+    /// Records that the file has room for.
+    std::uint64_t room() const { return (mContent.size() - kHeader) / kRecord; }
+    std::uint64_t bytesBehind(std::uint64_t records) const {
+        return mContent.size() - kHeader - records * kRecord;
+    }
+    bool hasAttribute(std::uint64_t offset) const { return mContent[offset + 48] || mContent[offset + 49]; }
+
+    void corners(std::uint64_t offset, Vec3f corner[3]) const {
+        for (std::uint64_t i = 0; i < 9; ++i) {
+            const std::uint32_t bits = word(offset + 12 + 4 * i);
+            std::memcpy(&corner[i / 3][int(i % 3)], &bits, 4);
+        }
+    }
+
+    // Of the first records, those that no model has.
+    std::uint64_t strange(std::uint64_t records) const {
+        std::uint64_t found = 0;
+        for (std::uint64_t i = 0; i < records; ++i) found += looksLikeTriangle(i, 1e20f) ? 0 : 1;
+        return found;
+    }
+
+    bool looksLikeTriangle(std::uint64_t record, float limit) const {
+        Vec3f corner[3];
+        corners(kHeader + record * kRecord, corner);
+        bool anywhere = false;
+        for (const Vec3f& p : corner)
+            for (int axis = 0; axis < 3; ++axis) {
+                const float size = std::abs(p[axis]);
+                if (!(size <= limit) || (size > 0 && size < 1e-20f)) return false;
+                anywhere = anywhere || size > 0;
+            }
+        return anywhere;
     }
 
 private:
-    MeshContent& mMesh;
-    std::unordered_map<Vec3f, std::uint32_t, PointHash, PointEqual> mSeen;
+    std::uint32_t word(std::uint64_t at) const {
+        unsigned char b[4];
+        std::memcpy(b, mContent.data() + at, 4);
+        if (mBigEndian) std::reverse(b, b + 4);
+        return std::uint32_t(b[0]) | std::uint32_t(b[1]) << 8 | std::uint32_t(b[2]) << 16 |
+               std::uint32_t(b[3]) << 24;
+    }
+
+    const std::string& mContent;
+    bool mBigEndian;
 };
 
-void addTriangle(MeshContent& mesh, Welder& welder, const Vec3f corner[3]) {
-    const Triangle t{welder.add(corner[0]), welder.add(corner[1]), welder.add(corner[2])};
-    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) mesh.polygons.add(t.data(), 3);
-}
-
-MeshContent readBinary(const std::string& path, const std::string& content, std::uint32_t count) {
-    MeshContent mesh;
-    Welder welder(mesh);
-    mesh.polygons.corners.reserve(std::size_t(count) * 3);
-    for (std::uint32_t i = 0; i < count; ++i) {
-        Vec3f corner[3];
-        std::memcpy(corner, content.data() + 84 + std::size_t(i) * 50 + 12, sizeof corner);
-        for (const Vec3f& p : corner)
-            if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-                throw Error(ErrorCode::BadData, path + ": triangle " + std::to_string(i) +
-                                                    " has a coordinate that is not a finite number");
-        addTriangle(mesh, welder, corner);
+// Where the headers of binary solids one after the other begin, if they fill the file; else the first alone.
+std::vector<std::uint64_t> blocksOf(const Binary& file, std::uint64_t size) {
+    std::vector<std::uint64_t> blocks;
+    for (std::uint64_t at = 0; at + kHeader <= size && (at == 0 || file.count(at) > 0);) {
+        blocks.push_back(at);
+        at += kHeader + kRecord * file.count(at);
+        if (at == size) return blocks;
     }
-    return mesh;
+    return {0};
 }
 
-MeshContent readAscii(const std::string& path, const std::string& content) {
-    MeshContent mesh;
-    Welder welder(mesh);
-    TextScanner scanner(path, content, '\0');
-    scanner.skipLine();  // solid NAME
+// True if the records behind those that the header claims are more of the same surface, and not other data.
+bool continues(const Binary& file, std::uint64_t from, std::uint64_t to) {
+    float largest = 0;
     Vec3f corner[3];
-    std::size_t corners = 0;
-    bool ended = false;
-    while (!scanner.atEnd()) {
-        const std::string_view word = scanner.word();
-        if (word == "vertex") {
-            if (corners == 3) scanner.fail("a facet has more than three vertices");
-            for (int axis = 0; axis < 3; ++axis) corner[corners][axis] = float(scanner.real());
-            ++corners;
-        } else if (word == "endfacet") {
-            if (corners != 3) scanner.fail("a facet has fewer than three vertices");
-            addTriangle(mesh, welder, corner);
-            corners = 0;
-        } else if (word == "solid" || word == "endsolid" || word == "facet" || word == "outer" ||
-                   word == "endloop") {
-            ended = word == "endsolid";
-            if (word != "endloop") scanner.skipLine();
-        } else {
-            scanner.fail("\"" + std::string(word.substr(0, 40)) + "\" does not belong in an STL file");
-        }
+    for (std::uint64_t i = 0; i < from; ++i) {
+        file.corners(kHeader + i * kRecord, corner);
+        for (const Vec3f& p : corner)
+            for (int axis = 0; axis < 3; ++axis)
+                if (std::isfinite(p[axis])) largest = std::max(largest, std::abs(p[axis]));
     }
-    if (!ended) scanner.fail("the file ends without endsolid; it is truncated");
-    return mesh;
+    const float limit = from > 0 ? 20 * largest : 1e20f;
+    std::uint64_t other = 0;
+    for (std::uint64_t i = from; i < to; ++i) other += file.looksLikeTriangle(i, limit) ? 0 : 1;
+    return other <= (to - from) / 10;
+}
+
+void addBlock(const Binary& file, std::uint64_t block, std::uint64_t count, FacetSoup& soup,
+              std::uint64_t& attributes) {
+    Vec3f corner[3];
+    for (std::uint64_t i = 0; i < count; ++i) {
+        const std::uint64_t offset = block + kHeader + i * kRecord;
+        file.corners(offset, corner);
+        const Vec3d points[3] = {cast<double>(corner[0]), cast<double>(corner[1]), cast<double>(corner[2])};
+        soup.add(corner, points, 3);
+        attributes += file.hasAttribute(offset) ? 1 : 0;
+    }
+}
+
+// How many records of the first solid to read, and what to say of it.
+struct Extent {
+    std::uint64_t records = 0;
+    MessageLevel level = MessageLevel::Note;
+    std::string note;
+    bool mustClose = false;  // the header claims more: whole only if the surface is closed
+};
+
+Extent extentOf(const Binary& file, const std::string& path) {
+    const std::uint64_t claimed = file.count(), room = file.room();
+    const std::string claims = "the header claims " + triangles(claimed), fits = triangles(room);
+    if ((claimed == 0 || claimed == kUnknownCount) && room > 0) {
+        if (!continues(file, 0, room))
+            throw Error(ErrorCode::BadData, path + ": " + claims + ", and the " +
+                                                std::to_string(file.bytesBehind(0)) +
+                                                " bytes behind it are not triangles");
+        return {room, MessageLevel::Note,
+                claims + ", the size of the file says " + fits + ", which are read"};
+    }
+    if (claimed > room)
+        return {room, MessageLevel::Warning,
+                claims + ", the file has " + fits +
+                    ", which are read: they are a closed surface, so the count is wrong",
+                true};
+    if (claimed < room && continues(file, claimed, room))
+        return {room, MessageLevel::Warning,
+                claims + ", the size of the file says " + fits + ", which are read"};
+    return {claimed, MessageLevel::Note, {}};
+}
+
+MeshContent readBinary(const std::string& path, const std::string& content, const RunContext& ctx) {
+    const Binary file(content);
+    FacetSoup soup;
+    std::uint64_t attributes = 0;
+    const auto say = [&](MessageLevel level, const std::string& text) {
+        message(ctx, level, path + ": " + text);
+    };
+    if (file.bigEndian()) say(MessageLevel::Note, "its numbers are big-endian, against the format; read so");
+    const std::vector<std::uint64_t> blocks = blocksOf(file, content.size());
+    if (blocks.size() > 1) {
+        say(MessageLevel::Note,
+            std::to_string(blocks.size()) + " binary solids one after the other, all are read");
+        for (const std::uint64_t block : blocks) addBlock(file, block, file.count(block), soup, attributes);
+    } else {
+        const Extent extent = extentOf(file, path);
+        addBlock(file, 0, extent.records, soup, attributes);
+        if (extent.mustClose && !soup.isClosed())
+            throw Error(ErrorCode::BadData, path + ": truncated, or not an STL file: the header claims " +
+                                                triangles(file.count()) + ", " + std::to_string(file.room()) +
+                                                " of them are there");
+        if (!extent.note.empty()) say(extent.level, extent.note);
+        if (const std::uint64_t behind = file.bytesBehind(extent.records))
+            say(MessageLevel::Note, std::to_string(behind) + " bytes behind the last of " +
+                                        triangles(extent.records) + " are not read");
+    }
+    if (attributes > 0)
+        say(MessageLevel::Note,
+            triangles(attributes) + " with attribute words, such as colours, which are not read");
+    return soup.take(path, ctx);
 }
 
 }  // namespace
 
-MeshContent readStl(const std::string& path, const std::string& content, const RunContext&) {
-    if (content.size() >= 84) {
+MeshContent readStl(const std::string& path, const std::string& content, const RunContext& ctx) {
+    const bool hasHeader = content.size() >= kHeader;
+    const bool fits = hasHeader && [&] {
         std::uint32_t count = 0;
         std::memcpy(&count, content.data() + 80, 4);
-        if (content.size() == 84 + std::size_t(count) * 50) return readBinary(path, content, count);
-        if (content.compare(0, 5, "solid") != 0)
-            throw Error(ErrorCode::BadData,
-                        path + ": the header claims " + std::to_string(count) + " triangles (" +
-                            std::to_string(84 + std::uint64_t(count) * 50) + " bytes), the file has " +
-                            std::to_string(content.size()) + " bytes");
-    }
-    if (content.compare(0, 5, "solid") != 0) throw Error(ErrorCode::BadData, path + ": not an STL file");
-    return readAscii(path, content);
+        return content.size() == kHeader + kRecord * count;
+    }();
+    if (!fits && isStlText(content)) return readStlText(path, content, ctx);
+    const bool text = content.find('\0') == std::string::npos;
+    if (!fits && text)
+        throw Error(ErrorCode::BadData,
+                    path + ": not an STL file: it is text that does not begin with solid");
+    if (!hasHeader)
+        throw Error(ErrorCode::BadData,
+                    path + ": not an STL file, or truncated: " + std::to_string(content.size()) +
+                        " bytes are fewer than a binary header's 84");
+    return readBinary(path, content, ctx);
 }
 
 }  // namespace vdbsynth

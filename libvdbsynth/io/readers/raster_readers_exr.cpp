@@ -54,13 +54,35 @@ private:
     std::size_t mAt = 0;
 };
 
-// The channels that heights are read from: Y, else R G B, else the first.
-std::vector<std::string> chooseChannels(const std::string& path, const Imf::ChannelList& list) {
-    if (list.findChannel("Y")) return {"Y"};
-    if (list.findChannel("R") && list.findChannel("G") && list.findChannel("B")) return {"R", "G", "B"};
-    for (auto it = list.begin(); it != list.end(); ++it)
-        if (std::string(it.name()) != "A") return {it.name()};
-    throw Error(ErrorCode::BadData, path + ": has no channel but alpha");
+// What heights can be read from, by the name that chooses it.
+struct Choices {
+    std::vector<std::string> names{};
+    std::vector<std::vector<std::string>> channels{};
+
+    void add(const std::string& name, const std::vector<std::string>& of) {
+        names.push_back(name);
+        // Messages show the file's names.
+        for (char& c : names.back())
+            if (c < ' ' || c > '~') c = '?';
+        channels.push_back(of);
+    }
+};
+
+// First the one that is read by default: Y, else R G B, else the first channel.
+Choices choicesOf(const std::string& path, const Imf::ChannelList& list) {
+    Choices choices;
+    const std::string luminance = "Y";
+    if (list.findChannel(luminance)) choices.add(luminance, {luminance});
+    const bool colour = list.findChannel("R") && list.findChannel("G") && list.findChannel("B");
+    if (colour) choices.add("RGB", {"R", "G", "B"});
+    for (auto it = list.begin(); it != list.end(); ++it) {
+        const std::string name = it.name();
+        const bool shown =
+            name == "A" || name == luminance || (colour && (name == "R" || name == "G" || name == "B"));
+        if (!shown) choices.add(name, {name});
+    }
+    if (choices.names.empty()) throw Error(ErrorCode::BadData, path + ": has no channel but alpha");
+    return choices;
 }
 
 void checkSubsampling(const std::string& path, const Imf::ChannelList& list, const std::string& name) {
@@ -70,20 +92,33 @@ void checkSubsampling(const std::string& path, const Imf::ChannelList& list, con
                     path + ": channel " + name + " is subsampled; store it at full resolution");
 }
 
-Raster readPixels(const std::string& path, const std::string& content, const RunContext& ctx) {
+// @return true if the file's version says that it has several images
+bool hasParts(const std::string& content) {
+    constexpr std::size_t kFlags = 5;
+    constexpr int kMultipart = 16;
+    return content.size() > kFlags && (content[kFlags] & kMultipart) != 0;
+}
+
+Raster readPixels(const std::string& path, const std::string& content, const RasterReadOptions& options,
+                  const RunContext& ctx) {
     MemoryIn stream(path, content);
     Imf::InputFile file(stream);
     const Imf::Header& header = file.header();
     const Imath::Box2i window = header.dataWindow();
     const std::int64_t width = std::int64_t(window.max.x) - window.min.x + 1,
                        height = std::int64_t(window.max.y) - window.min.y + 1;
-    const std::vector<std::string> names = chooseChannels(path, header.channels());
+    const Choices choices = choicesOf(path, header.channels());
+    const std::vector<std::string>& names =
+        choices.channels[chosenArray(path, choices.names, 0, options, ctx)];
+    if (hasParts(content))
+        message(ctx, MessageLevel::Note, path + ": holds several images (parts), of which the first is read");
     // The strongest compression gives a few thousandths; a line table alone needs
     // eight bytes per chunk of lines.
     if (!productFits({width, height}, 4000 * content.size()))
         throw Error(ErrorCode::BadData, path + ": truncated");
     Raster raster = makeRaster(path, width, height, 1, int(names.size()), ctx);
     raster.rowsFromTop = true;
+    if (choices.names.size() > 1) raster.arrays = choices.names;
     std::vector<float> alpha(raster.sampleCount(), 1.f);
     Imf::FrameBuffer frame;
     const auto add = [&](const std::string& name, float* values, std::size_t channels) {
@@ -103,11 +138,12 @@ Raster readPixels(const std::string& path, const std::string& content, const Run
 
 }  // namespace
 
-Raster readExr(const std::string& path, const std::string& content, const RunContext& ctx) {
+Raster readExr(const std::string& path, const std::string& content, const RasterReadOptions& options,
+               const RunContext& ctx) {
     if (content.compare(0, 4, "\x76\x2f\x31\x01") != 0)
         throw Error(ErrorCode::BadData, path + ": not an OpenEXR image");
     try {
-        return readPixels(path, content, ctx);
+        return readPixels(path, content, options, ctx);
     } catch (const Error&) {
         throw;
     } catch (const std::exception& error) {

@@ -1,7 +1,9 @@
 // NIfTI-1 and NIfTI-2, single files.
 #include "libvdbsynth/base/checked_product.h"
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/readers/raster_readers.h"
+#include "libvdbsynth/raster/raster_alignment.h"
 
 #include <algorithm>
 #include <array>
@@ -10,8 +12,6 @@
 
 namespace vdbsynth {
 namespace {
-
-using Matrix = std::array<std::array<double, 4>, 3>;
 
 // Reads fields of the header in either byte order.
 class HeaderFields {
@@ -38,7 +38,7 @@ struct Header {
     double dims[8] = {}, pixdim[8] = {}, offset = 0, slope = 0, intercept = 0;
     int datatype = 0, qform = 0, sform = 0, units = 0;
     double quaternion[6] = {};
-    Matrix srow{};
+    Affine srow = kIdentity;
 };
 
 template <typename Dim, typename Real, typename Code>
@@ -54,7 +54,18 @@ void readFields(const HeaderFields& f, Header& h, const std::array<std::size_t, 
     h.qform = int(f.at<Code>(at[6]));
     h.sform = int(f.at<Code>(at[7]));
     for (std::size_t i = 0; i < 6; ++i) h.quaternion[i] = f.at<Real>(at[8] + i * sizeof(Real));
-    for (std::size_t i = 0; i < 12; ++i) h.srow[i / 4][i % 4] = f.at<Real>(at[9] + i * sizeof(Real));
+    for (std::size_t i = 0; i < 12; ++i) h.srow[i % 4 * 4 + i / 4] = f.at<Real>(at[9] + i * sizeof(Real));
+}
+
+// Analyze 7.5 and pairs of .hdr and .img have the same header.
+void requireOneFile(const std::string& path, const std::string& magic) {
+    if (magic.compare(0, 2, "n+") == 0) return;
+    if (magic.compare(0, 2, "ni") == 0)
+        throw Error(ErrorCode::BadData,
+                    path + ": its voxels are in another file (.img); convert it to one .nii");
+    throw Error(ErrorCode::BadData, path +
+                                        ": has an Analyze 7.5 header (no NIfTI magic), which says nothing "
+                                        "of orientation; convert it to one .nii");
 }
 
 Header parseHeader(const std::string& path, const std::string& content) {
@@ -67,10 +78,8 @@ Header parseHeader(const std::string& path, const std::string& content) {
     if ((size != 348 && size != 540) || content.size() < std::size_t(size) + 4)
         throw Error(ErrorCode::BadData, path + ": not a NIfTI file, or truncated in its header");
     const HeaderFields f(content, h.swap);
+    requireOneFile(path, size == 348 ? content.substr(344, 3) : content.substr(4, 3));
     if (size == 348) {
-        if (content.compare(344, 2, "n+") != 0)
-            throw Error(ErrorCode::BadData,
-                        path + ": its voxels are in another file (.img); convert it to one .nii");
         readFields<std::int16_t, float, std::int16_t>(f, h, {40, 76, 70, 108, 112, 123, 252, 254, 256, 280});
         h.offset = std::max(352.0, f.at<float>(108));
         h.units = content[123];
@@ -87,118 +96,155 @@ SampleType typeOf(const std::string& path, int code) {
         {2, SampleType::U8},     {4, SampleType::I16},   {8, SampleType::I32},   {16, SampleType::F32},
         {64, SampleType::F64},   {256, SampleType::I8},  {512, SampleType::U16}, {768, SampleType::U32},
         {1024, SampleType::I64}, {1280, SampleType::U64}};
+    static const std::map<int, const char*> others{
+        {0, "unknown"},     {1, "bits"},          {32, "complex numbers"}, {128, "colours (RGB24)"},
+        {1536, "float128"}, {1792, "complex128"}, {2048, "complex256"},    {2304, "colours (RGBA32)"}};
     const auto found = types.find(code);
-    if (found == types.end())
-        throw Error(ErrorCode::BadData, path + ": NIfTI data type " + std::to_string(code) +
-                                            " is not supported; plain numbers are");
-    return found->second;
+    if (found != types.end()) return found->second;
+    const auto other = others.find(code);
+    throw Error(ErrorCode::BadData, path + ": holds values of NIfTI data type " + std::to_string(code) +
+                                        (other == others.end() ? "" : std::string(", ") + other->second) +
+                                        ", which is not supported; convert it to one real number a voxel");
 }
 
-// Voxel to world by the transform that the file prefers; only its voxel sizes if it has none.
-Matrix affineOf(const Header& h) {
-    if (h.sform > 0) return h.srow;
-    Matrix m{};
-    const double fac = h.pixdim[0] < 0 ? -1 : 1;
-    if (h.qform <= 0) {
-        for (std::size_t i = 0; i < 3; ++i) m[i][i] = h.pixdim[i + 1];
-        return m;
+// Sizes of voxels without a sign; zero is how some writers say one.
+std::array<double, 3> voxelSizes(const Header& h) {
+    std::array<double, 3> sizes;
+    for (std::size_t i = 0; i < 3; ++i) sizes[i] = h.pixdim[i + 1] == 0 ? 1 : std::abs(h.pixdim[i + 1]);
+    return sizes;
+}
+
+// The map by the quaternion.
+Affine qformOf(const Header& h) {
+    double b = h.quaternion[0], c = h.quaternion[1], d = h.quaternion[2];
+    const double rest = 1 - (b * b + c * c + d * d);
+    double a = 0;
+    // Three parts stored as floats: what rounding left is no fourth part.
+    if (rest < 1e-7) {
+        const double norm = std::sqrt(b * b + c * c + d * d);
+        b /= norm, c /= norm, d /= norm;
+    } else {
+        a = std::sqrt(rest);
     }
-    const double b = h.quaternion[0], c = h.quaternion[1], d = h.quaternion[2];
-    const double a = std::sqrt(std::max(0.0, 1 - b * b - c * c - d * d));
-    const double r[3][3] = {{a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c)},
-                            {2 * (b * c + a * d), a * a + c * c - b * b - d * d, 2 * (c * d - a * b)},
-                            {2 * (b * d - a * c), 2 * (c * d + a * b), a * a + d * d - b * b - c * c}};
-    for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t j = 0; j < 3; ++j) m[i][j] = r[i][j] * h.pixdim[j + 1] * (j == 2 ? fac : 1);
-        m[i][3] = h.quaternion[3 + i];
-    }
+    Affine m = rotation(b, c, d, a);
+    const std::array<double, 3> sizes = voxelSizes(h);
+    for (std::size_t j = 0; j < 3; ++j)
+        for (std::size_t i = 0; i < 3; ++i) m[4 * j + i] *= sizes[j] * (j == 2 && h.pixdim[0] < 0 ? -1 : 1);
+    for (std::size_t i = 0; i < 3; ++i) m[12 + i] = h.quaternion[3 + i];
     return m;
 }
 
-// For each world axis the voxel axis closest to it, without repetition.
-std::array<int, 3> nearestAxes(const Matrix& m, bool& oblique) {
-    std::array<int, 3> best{0, 1, 2}, order{0, 1, 2};
-    double score = -1;
-    do {
-        double sum = 0;
-        for (std::size_t i = 0; i < 3; ++i) sum += std::abs(m[i][std::size_t(order[i])]);
-        if (sum > score) {
-            score = sum;
-            best = order;
-        }
-    } while (std::next_permutation(order.begin(), order.end()));
-    oblique = false;
-    for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j)
-            oblique = oblique ||
-                      (int(j) != best[i] && std::abs(m[i][j]) > 1e-3 * std::abs(m[i][std::size_t(best[i])]));
-    return best;
+// How far apart two maps place a corner of the volume.
+double largestDifference(const Affine& a, const Affine& b, const Index3& size) {
+    double most = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec3d at{corner & 1 ? size.x - 1.0 : 0, corner & 2 ? size.y - 1.0 : 0,
+                       corner & 4 ? size.z - 1.0 : 0};
+        const Vec3d way = transformed(a, at) - transformed(b, at);
+        most = std::max(most, length(way));
+    }
+    return most;
 }
 
-// The samples reordered so that columns, rows and slices point along the world axes.
-Raster aligned(const std::string& path, Raster stored, const Header& h, const RunContext& ctx) {
-    const Matrix m = affineOf(h);
-    bool oblique = false;
-    const std::array<int, 3> axes = nearestAxes(m, oblique);
-    Index3 size;
-    for (int axis = 0; axis < 3; ++axis) size[axis] = stored.size[axes[std::size_t(axis)]];
-    Raster raster = makeRaster(path, size.x, size.y, size.z, 1, ctx);
-    raster.stack = true;
-    raster.white = stored.white;
-    bool flip[3];
-    for (std::size_t i = 0; i < 3; ++i) {
-        double squared = 0;
-        for (std::size_t r = 0; r < 3; ++r)
-            squared += m[r][std::size_t(axes[i])] * m[r][std::size_t(axes[i])];
-        raster.spacing[int(i)] = std::sqrt(squared);
-        flip[i] = m[i][std::size_t(axes[i])] < 0;
-        raster.origin[int(i)] = m[i][3] - (flip[i] ? raster.spacing[int(i)] * (size[int(i)] - 1) : 0);
+bool isUsable(const Affine& m) {
+    const double volume = std::abs(determinant(m));
+    return volume > 0 && std::isfinite(volume);
+}
+
+// Voxel to world by the transform that the standard prefers: sform, qform, voxel sizes alone.
+Affine affineOf(const std::string& path, const Header& h, const Index3& size, const RunContext& ctx) {
+    const std::array<double, 3> sizes = voxelSizes(h);
+    const Affine q = h.qform > 0 ? qformOf(h) : kIdentity;
+    if (h.sform > 0 && isUsable(h.srow)) {
+        const double apart = h.qform > 0 && isUsable(q) ? largestDifference(h.srow, q, size) : 0;
+        if (apart > 0.5 * *std::min_element(sizes.begin(), sizes.end()))
+            message(ctx, MessageLevel::Note,
+                    path + ": its sform and its qform place it differently, by up to " +
+                        roundedText(apart, 3) + "; the sform is used");
+        else
+            message(ctx, MessageLevel::Detail, path + ": placed by its sform");
+        return h.srow;
     }
-    raster.knownSpacing = true;
-    raster.unit = (h.units & 7) == 1 ? "m" : (h.units & 7) == 2 ? "mm" : (h.units & 7) == 3 ? "um" : "";
-    if (oblique)
+    if (h.sform > 0)
+        message(
+            ctx, MessageLevel::Note,
+            path + ": its sform is singular; placed by its " + (h.qform > 0 ? "qform" : "voxel sizes alone"));
+    if (h.qform > 0) {
+        message(ctx, MessageLevel::Detail, path + ": placed by its qform");
+        return q;
+    }
+    if (h.sform <= 0)
         message(ctx, MessageLevel::Note,
-                path + ": is rotated relative to the world axes; the rotation is ignored");
-    Index3 from;
-    for (int z = 0; z < size.z; ++z)
-        for (int y = 0; y < size.y; ++y)
-            for (int x = 0; x < size.x; ++x) {
-                const Index3 to{x, y, z};
-                for (int axis = 0; axis < 3; ++axis)
-                    from[axes[std::size_t(axis)]] = flip[axis] ? size[axis] - 1 - to[axis] : to[axis];
-                raster.values[raster.index(x, y, z)] = stored.at(from.x, from.y, from.z);
-            }
+                path + ": has no sform and no qform; placed by its voxel sizes alone");
+    Affine m = kIdentity;
+    for (std::size_t i = 0; i < 3; ++i) m[5 * i] = sizes[i];
+    return m;
+}
+
+Raster placed(const std::string& path, Raster stored, const Header& h, const RunContext& ctx) {
+    const Affine m = affineOf(path, h, stored.size, ctx);
+    Raster raster = alignedToWorld(path, std::move(stored), m, ctx);
+    raster.stack = true;
+    raster.unit = (h.units & 7) == 1 ? "m" : (h.units & 7) == 2 ? "mm" : (h.units & 7) == 3 ? "um" : "";
+    sayTurn(path, raster, ctx);
     return raster;
+}
+
+// Names of the volumes that follow each other: frames of time, parts of vectors and what else is counted.
+std::vector<std::string> volumesOf(const std::string& path, const Header& h) {
+    constexpr std::int64_t kMost = 100000;
+    // Some writers leave dimensions that they do not use at zero.
+    const auto side = [&](int i) {
+        return i <= int(h.dims[0]) ? std::int64_t(std::clamp(h.dims[i], 1.0, 1e9)) : 1;
+    };
+    const std::optional<std::int64_t> count = checkedProduct({side(4), side(5), side(6), side(7)});
+    if (!count || *count > kMost)
+        throw Error(ErrorCode::BadData, path + ": its header claims over " + std::to_string(kMost) +
+                                            " volumes; save the one you need as a file of its own");
+    std::vector<std::string> names;
+    const char* kind = side(4) == 1 && side(5) > 1 ? "component" : "volume";
+    for (std::int64_t i = 1; i <= *count; ++i) names.push_back(kind + std::to_string(i));
+    return names;
+}
+
+void scale(const Header& h, Raster& raster) {
+    if (!std::isfinite(h.slope) || !std::isfinite(h.intercept) || h.slope == 0) return;
+    if (h.slope == 1 && h.intercept == 0) return;
+    for (float& value : raster.values) value = float(double(value) * h.slope + h.intercept);
+    raster.white = 0;
 }
 
 }  // namespace
 
-Raster readNifti(const std::string& path, const std::string& content, const RunContext& ctx) {
+Raster readNifti(const std::string& path, const std::string& content, const RasterReadOptions& options,
+                 const RunContext& ctx) {
     const Header h = parseHeader(path, content);
-    const int dimensions = int(h.dims[0]);
-    if (!(h.dims[0] >= 2 && h.dims[0] <= 7))
-        throw Error(ErrorCode::BadData,
-                    path + ": its header claims " + std::to_string(dimensions) + " dimensions");
-    for (int i = 4; i <= dimensions; ++i)
-        if (h.dims[i] > 1)
-            throw Error(ErrorCode::BadData,
-                        path + ": holds several volumes or vectors; one value a voxel is read");
+    if (!(h.dims[0] >= 1 && h.dims[0] <= 7))
+        throw Error(ErrorCode::BadData, path + ": its header claims " + roundedText(h.dims[0], 6) +
+                                            " dimensions; 1 to 7 are possible");
     const SampleType type = typeOf(path, h.datatype);
+    const std::vector<std::string> volumes = volumesOf(path, h);
     // Version 2 allows sides that no other type holds.
-    const auto side = [&h](int i) { return std::int64_t(std::clamp(h.dims[i], -1e15, 1e15)); };
-    const std::int64_t columns = side(1), rows = side(2), slices = dimensions > 2 ? side(3) : 1;
+    const auto side = [&h](int i) {
+        return i <= int(h.dims[0]) ? std::int64_t(std::clamp(h.dims[i], -1e15, 1e15)) : 1;
+    };
+    const std::int64_t columns = side(1), rows = side(2), slices = side(3);
     if (!(h.offset >= 0 && h.offset <= double(content.size())) ||
-        !productFits({columns, rows, slices, std::int64_t(bytesOf(type))},
+        !productFits({columns, rows, slices, std::int64_t(bytesOf(type)), std::int64_t(volumes.size())},
                      content.size() - std::size_t(h.offset)))
-        throw Error(ErrorCode::BadData, path + ": truncated");
+        throw Error(ErrorCode::BadData,
+                    path + ": truncated; its header claims " + std::to_string(columns) + " x " +
+                        std::to_string(rows) + " x " + std::to_string(slices) + " voxels" +
+                        (volumes.size() > 1 ? " in " + std::to_string(volumes.size()) + " volumes" : ""));
+    const std::size_t volume = volumes.size() > 1 ? chosenArray(path, volumes, 0, options, ctx) : 0;
     Raster stored = makeRaster(path, columns, rows, slices, 1, ctx);
     stored.white = whiteOf(type);
-    toFloats(content.data() + std::size_t(h.offset), stored.values.size(), type, h.swap,
-             stored.values.data());
-    if (std::isfinite(h.slope) && std::isfinite(h.intercept) && h.slope != 0 &&
-        !(h.slope == 1 && h.intercept == 0))
-        for (float& value : stored.values) value = float(double(value) * h.slope + h.intercept);
-    return aligned(path, std::move(stored), h, ctx);
+    toFloats(content.data() + std::size_t(h.offset) + volume * stored.values.size() * bytesOf(type),
+             stored.values.size(), type, h.swap, stored.values.data());
+    scale(h, stored);
+    Raster raster = placed(path, std::move(stored), h, ctx);
+    if (volumes.size() > 1) raster.arrays = volumes;
+    return raster;
 }
 
 }  // namespace vdbsynth

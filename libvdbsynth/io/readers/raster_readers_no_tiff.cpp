@@ -4,7 +4,7 @@
 
 namespace vdbsynth {
 
-Raster readTiff(const std::string& path, const std::string&, const RunContext&) {
+Raster readTiff(const std::string& path, const std::string&, const RasterReadOptions&, const RunContext&) {
     throw Error(ErrorCode::Unusable, path + ": this build does not read TIFF; convert it to png, npy or exr");
 }
 

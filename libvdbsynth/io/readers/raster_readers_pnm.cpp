@@ -6,7 +6,8 @@
 
 namespace vdbsynth {
 
-Raster readPnm(const std::string& path, const std::string& content, const RunContext& ctx) {
+Raster readPnm(const std::string& path, const std::string& content, const RasterReadOptions&,
+               const RunContext& ctx) {
     const std::string magic = content.substr(0, 2);
     const bool ascii = magic == "P2" || magic == "P3", colour = magic == "P3" || magic == "P6";
     if (!ascii && magic != "P5" && magic != "P6")

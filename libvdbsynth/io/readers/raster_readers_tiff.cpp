@@ -1,351 +1,184 @@
-#include "libvdbsynth/base/checked_product.h"
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/io/readers/orientation.h"
 #include "libvdbsynth/io/readers/raster_readers.h"
-#include "libvdbsynth/io/readers/text_scanner.h"
-#include "libvdbsynth/math/trigonometry.h"
-
-#include <tiffio.h>
+#include "libvdbsynth/io/readers/tiff/tiff_contents.h"
+#include "libvdbsynth/io/readers/tiff/tiff_geography.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <memory>
 
 namespace vdbsynth {
 namespace {
 
-constexpr std::uint32_t kPixelScale = 33550, kTiePoint = 33922, kGeoKeys = 34735, kNoData = 42113;
+using Kind = StackDescription::Kind;
 
-struct Source {
-    const std::string& content;
-    std::uint64_t at = 0;
-};
-
-tmsize_t readBytes(thandle_t handle, void* out, tmsize_t count) {
-    Source& source = *static_cast<Source*>(handle);
-    const std::uint64_t left = source.at < source.content.size() ? source.content.size() - source.at : 0;
-    const std::uint64_t some = std::min<std::uint64_t>(left, std::uint64_t(std::max<tmsize_t>(count, 0)));
-    std::memcpy(out, source.content.data() + source.at, some);
-    source.at += some;
-    return tmsize_t(some);
-}
-tmsize_t writeBytes(thandle_t, void*, tmsize_t) {
-    return 0;
-}
-toff_t seek(thandle_t handle, toff_t offset, int from) {
-    Source& source = *static_cast<Source*>(handle);
-    source.at = (from == SEEK_CUR ? source.at : from == SEEK_END ? source.content.size() : 0) + offset;
-    return source.at;
-}
-int closeNothing(thandle_t) {
-    return 0;
-}
-toff_t sizeOf(thandle_t handle) {
-    return static_cast<Source*>(handle)->content.size();
+// The place of the choice to read. Where channels or frames have others of their kind, "channel2" is that of
+// the first frame.
+std::size_t chosen(const std::string& path, TiffContents& contents, const RasterReadOptions& options,
+                   const RunContext& ctx) {
+    std::vector<std::string> names;
+    for (const TiffChoice& choice : contents.choices)
+        if (!choice.name.empty()) names.push_back(choice.name);
+    if (names.empty()) return 0;
+    RasterReadOptions wanted = options;
+    if (!wanted.array.empty() && std::find(names.begin(), names.end(), wanted.array) == names.end())
+        for (const std::string& whole : {wanted.array + "-frame1", "channel1-" + wanted.array})
+            if (std::find(names.begin(), names.end(), whole) != names.end()) wanted.array = whole;
+    // Other pages have been told of.
+    if (wanted.array.empty() && contents.described < 2) return 0;
+    return chosenArray(path, names, 0, wanted, ctx);
 }
 
-// libtiff has one handler for all files of the process; each thread stores its last message for our errors.
-thread_local std::string lastFailure;
-void keepFailure(const char*, const char* format, va_list arguments) {
-    char text[256];
-    std::vsnprintf(text, sizeof text, format, arguments);
-    lastFailure = text;
+// ImageJ takes a resolution of 72 per inch for none.
+void imageJSpacing(const StackDescription& description, const TiffPage& page, Raster& raster) {
+    constexpr double kScreen = 72;
+    constexpr std::uint16_t kInch = 2, kCentimetre = 3;
+    const bool screen =
+        description.unit.empty() && page.resolutionUnit == kInch && page.resolution[0] == kScreen;
+    for (int axis = 0; axis < 2 && !screen; ++axis) {
+        const double size = 1 / page.resolution[axis];
+        if (size > 1e-30 && size < 1e30) raster.spacing[axis] = size;
+    }
+    if (description.spacing[2] > 0) raster.spacing.z = description.spacing[2];
+    raster.unit = description.unit;
+    if (raster.unit.empty() && !screen)
+        raster.unit = page.resolutionUnit == kInch ? "in" : page.resolutionUnit == kCentimetre ? "cm" : "";
 }
 
-using File = std::unique_ptr<TIFF, void (*)(TIFF*)>;
-
-struct Layout {
-    std::uint32_t width = 0, height = 0;
-    std::uint16_t bits = 1, samples = 1, format = SAMPLEFORMAT_UINT, planar = PLANARCONFIG_CONTIG;
-    std::uint16_t photometric = PHOTOMETRIC_MINISBLACK, extras = 0;
-    bool alpha = false;  // the last extra sample is the pixel's opacity
-    bool stack = false;  // one of several pages: stored values are read, not displayed ones
-    bool operator==(const Layout& o) const {
-        return width == o.width && height == o.height && bits == o.bits && samples == o.samples &&
-               format == o.format && planar == o.planar && photometric == o.photometric && extras == o.extras;
-    }
-};
-
-Layout layoutOf(TIFF* file) {
-    Layout layout;
-    TIFFGetField(file, TIFFTAG_IMAGEWIDTH, &layout.width);
-    TIFFGetField(file, TIFFTAG_IMAGELENGTH, &layout.height);
-    TIFFGetFieldDefaulted(file, TIFFTAG_BITSPERSAMPLE, &layout.bits);
-    TIFFGetFieldDefaulted(file, TIFFTAG_SAMPLESPERPIXEL, &layout.samples);
-    TIFFGetFieldDefaulted(file, TIFFTAG_SAMPLEFORMAT, &layout.format);
-    TIFFGetFieldDefaulted(file, TIFFTAG_PLANARCONFIG, &layout.planar);
-    TIFFGetField(file, TIFFTAG_PHOTOMETRIC, &layout.photometric);
-    std::uint16_t* kinds = nullptr;
-    TIFFGetFieldDefaulted(file, TIFFTAG_EXTRASAMPLES, &layout.extras, &kinds);
-    if (kinds && layout.extras > 0) {
-        const std::uint16_t last = kinds[layout.extras - 1];
-        layout.alpha = last == EXTRASAMPLE_ASSOCALPHA || last == EXTRASAMPLE_UNASSALPHA;
-    }
-    return layout;
+void omeSpacing(const StackDescription& description, Raster& raster) {
+    const double first = description.spacing[0] > 0 ? description.spacing[0] : 1;
+    for (int axis = 0; axis < 3; ++axis)
+        raster.spacing[axis] = description.spacing[axis] > 0 ? description.spacing[axis] : first;
+    raster.unit = description.unit;
 }
 
-// The type of a sample that is read as stored; false for packed bits and colours that libtiff must convert.
-bool plainType(const Layout& layout, SampleType& type) {
-    const bool grey = layout.photometric == PHOTOMETRIC_MINISBLACK ||
-                      layout.photometric == PHOTOMETRIC_MINISWHITE ||
-                      (layout.stack && layout.photometric == PHOTOMETRIC_PALETTE);
-    if (!grey && layout.photometric != PHOTOMETRIC_RGB) return false;
-    const bool real = layout.format == SAMPLEFORMAT_IEEEFP, integer = layout.format == SAMPLEFORMAT_INT;
-    if (!real && !integer && layout.format != SAMPLEFORMAT_UINT && layout.format != SAMPLEFORMAT_VOID)
-        return false;
-    switch (layout.bits) {
-        case 8:
-            type = integer ? SampleType::I8 : SampleType::U8;
-            return !real;
-        case 16:
-            type = real ? SampleType::F16 : integer ? SampleType::I16 : SampleType::U16;
-            return true;
-        case 32:
-            type = real ? SampleType::F32 : integer ? SampleType::I32 : SampleType::U32;
-            return true;
-        case 64:
-            type = real ? SampleType::F64 : integer ? SampleType::I64 : SampleType::U64;
-            return true;
-        default:
-            return false;
-    }
-}
-
-class PageReader {
-public:
-    PageReader(const std::string& path, TIFF* file, const RunContext& ctx)
-        : mPath(path), mFile(file), mContext(ctx) {}
-
-    // Channels that a page yields: three for an RGB image, else one.
-    int channels(const Layout& layout) const {
-        SampleType type{};
-        if (!plainType(layout, type))
-            return layout.photometric == PHOTOMETRIC_MINISBLACK ||
-                           layout.photometric == PHOTOMETRIC_MINISWHITE
-                       ? 1
-                       : 3;
-        return layout.photometric == PHOTOMETRIC_RGB && layout.samples >= 3 ? 3 : 1;
-    }
-    void read(const Layout& layout, int channels, float* out) {
-        SampleType type{};
-        if (plainType(layout, type))
-            readPlain(layout, type, channels, out);
-        else
-            readConverted(layout, channels, out);
-    }
-
-private:
-    [[noreturn]] void fail() const {
-        throw Error(ErrorCode::BadData,
-                    mPath + ": not a whole TIFF image: " + (lastFailure.empty() ? "corrupt" : lastFailure));
-    }
-
-    // Copies the part of a decoded strip or tile that lies within the page.
-    void place(const Layout& layout, SampleType type, int channels, const char* bytes, std::size_t got,
-               Index3 at, Index3 size, int plane, float* out) const {
-        const std::size_t stored = layout.planar == PLANARCONFIG_CONTIG ? layout.samples : 1;
-        std::vector<float> row(std::size_t(size.x) * stored);
-        const bool whiteIsZero = layout.photometric == PHOTOMETRIC_MINISWHITE && whiteOf(type) > 0;
-        for (int y = 0; y < size.y && at.y + y < int(layout.height); ++y) {
-            const std::size_t offset = std::size_t(y) * row.size() * bytesOf(type);
-            if (offset + row.size() * bytesOf(type) > got) fail();
-            toFloats(bytes + offset, row.size(), type, false, row.data());
-            for (int x = 0; x < size.x && at.x + x < int(layout.width); ++x) {
-                float* pixel = out + (std::size_t(at.y + y) * layout.width + std::size_t(at.x + x)) *
-                                         std::size_t(channels);
-                const float* from = &row[std::size_t(x) * stored];
-                if (stored == 1 && plane < channels) pixel[plane] = from[0];
-                for (std::size_t c = 0; stored > 1 && c < std::size_t(channels); ++c) pixel[c] = from[c];
-                for (int c = 0; whiteIsZero && c < channels; ++c)
-                    if (stored > 1 || c == plane) pixel[c] = float(whiteOf(type)) - pixel[c];
-                // A transparent pixel has no data; opacity in a separate plane is ignored.
-                if (stored > std::size_t(channels) && layout.alpha && from[stored - 1] == 0)
-                    for (int c = 0; c < channels; ++c) pixel[c] = std::nanf("");
-            }
-        }
-    }
-
-    void readPlain(const Layout& layout, SampleType type, int channels, float* out) {
-        const bool tiled = TIFFIsTiled(mFile) != 0;
-        std::uint32_t width = layout.width, height = layout.height;
-        if (tiled) {
-            TIFFGetField(mFile, TIFFTAG_TILEWIDTH, &width);
-            TIFFGetField(mFile, TIFFTAG_TILELENGTH, &height);
-        } else {
-            TIFFGetFieldDefaulted(mFile, TIFFTAG_ROWSPERSTRIP, &height);
-            height = std::min(height, layout.height);
-        }
-        const tmsize_t most = tiled ? TIFFTileSize(mFile) : TIFFStripSize(mFile);
-        if (width == 0 || height == 0 || width > 1 << 24 || height > 1 << 24 || most <= 0) fail();
-        requireMemory(mContext, double(most), mPath + ": a strip", "store it in smaller ones");
-        std::vector<char> bytes(static_cast<std::size_t>(most));
-        const std::uint32_t across = (layout.width + width - 1) / width,
-                            down = (layout.height + height - 1) / height;
-        const std::uint32_t planes = layout.planar == PLANARCONFIG_SEPARATE ? layout.samples : 1;
-        // libtiff counts pieces in 32 bits.
-        if (!productFits({across, down, planes}, 0xffffffffu)) fail();
-        for (std::uint32_t plane = 0; plane < planes; ++plane)
-            for (std::uint32_t i = 0; i < across * down; ++i) {
-                const std::uint32_t number = plane * across * down + i;
-                const tmsize_t got = tiled ? TIFFReadEncodedTile(mFile, number, bytes.data(), most)
-                                           : TIFFReadEncodedStrip(mFile, number, bytes.data(), most);
-                if (got < 0) fail();
-                const Index3 at{int(i % across * width), int(i / across * height), 0};
-                const int rows = tiled ? int(height) : std::min(int(height), int(layout.height) - at.y);
-                place(layout, type, channels, bytes.data(), std::size_t(got), at, {int(width), rows, 1},
-                      int(plane), out);
-            }
-    }
-
-    // For a stack of few bits the stored numbers: libtiff spreads them to 255.
-    static float unscaled(float value, const Layout& layout) {
-        if (!layout.stack || layout.bits >= 8) return value;
-        return std::round(value * float((1 << layout.bits) - 1) / 255);
-    }
-
-    // Palettes, packed bits, JPEG inside TIFF and similar: libtiff converts to 8-bit colours.
-    void readConverted(const Layout& layout, int channels, float* out) {
-        char reason[1024];
-        if (!TIFFRGBAImageOK(mFile, reason))
-            throw Error(ErrorCode::BadData,
-                        mPath + ": a kind of TIFF image that is not supported: " + reason);
-        const std::size_t count = std::size_t(layout.width) * layout.height;
-        std::vector<std::uint32_t> pixels(count);
-        if (!TIFFReadRGBAImageOriented(mFile, layout.width, layout.height, pixels.data(), ORIENTATION_TOPLEFT,
-                                       1))
-            fail();
-        for (std::size_t i = 0; i < count; ++i)
-            for (int c = 0; c < channels; ++c)
-                out[i * std::size_t(channels) + std::size_t(c)] =
-                    unscaled(float(pixels[i] >> (8 * c) & 255), layout);
-    }
-
-    const std::string& mPath;
-    TIFF* mFile;
-    const RunContext& mContext;
-};
-
-// The values of a tag unknown to libtiff, null unless they are of this type: a file may use any type.
-const void* valuesOf(TIFF* file, std::uint32_t tag, TIFFDataType type, std::uint32_t& count) {
-    const TIFFField* field = TIFFFindField(file, tag, TIFF_ANY);
-    const void* values = nullptr;
-    count = 0;
-    const bool good = field && TIFFFieldDataType(field) == type && TIFFFieldPassCount(field) &&
-                      TIFFFieldReadCount(field) == TIFF_VARIABLE2 && TIFFGetField(file, tag, &count, &values);
-    return good ? values : nullptr;
-}
-
-// GDAL's text for the no-data value.
-void dropNoData(TIFF* file, Raster& raster) {
-    std::uint32_t count = 0;
-    const char* text = static_cast<const char*>(valuesOf(file, kNoData, TIFF_ASCII, count));
-    if (!text || count == 0) return;
-    std::string word(text, strnlen(text, count));
-    while (!word.empty() && word.back() == ' ') word.pop_back();
-    float value = 0;
-    if (!parseAnyReal(word, value)) return;
-    for (float& sample : raster.values)
-        if (sample == value) sample = std::nanf("");
-}
-
-// GeoTIFF: the size of a pixel, in metres; degrees become metres at the image's middle.
-void readGeography(TIFF* file, Raster& raster) {
-    std::uint32_t count = 0;
-    const double* scale = static_cast<const double*>(valuesOf(file, kPixelScale, TIFF_DOUBLE, count));
-    if (!scale || count < 2 || !(scale[0] > 0) || !(scale[1] > 0)) return;
-    raster.spacing = {scale[0], scale[1], 1};
+// The size of cells by the description, with a note: it is not a cube of 1.
+void readSpacing(const std::string& path, const StackDescription& description, const TiffPage& page,
+                 Raster& raster, const RunContext& ctx) {
+    if (description.kind == Kind::ImageJ)
+        imageJSpacing(description, page, raster);
+    else if (description.kind == Kind::Ome)
+        omeSpacing(description, raster);
+    else
+        return;
+    const Vec3d& s = raster.spacing;
+    if (s.x == 1 && s.y == 1 && s.z == 1 && raster.unit.empty()) return;
     raster.knownSpacing = true;
-    bool degrees = false;
-    if (const auto* keys = static_cast<const std::uint16_t*>(valuesOf(file, kGeoKeys, TIFF_SHORT, count)))
-        for (std::uint32_t i = 4; i + 3 < count; i += 4)
-            degrees = degrees || (keys[i] == 1024 && keys[i + 3] == 2);
-    if (!degrees) return;
-    double latitude = 0;
-    const double* tie = static_cast<const double*>(valuesOf(file, kTiePoint, TIFF_DOUBLE, count));
-    if (tie && count >= 6) latitude = tie[4] - (raster.size.y / 2.0 - tie[1]) * scale[1];
-    constexpr double kMetresPerDegree = 111320, kRadians = 3.14159265358979323846 / 180;
-    const double narrowing = std::abs(latitude) < 89 ? cosine(latitude * kRadians) : 1;
-    raster.spacing = {scale[0] * kMetresPerDegree * narrowing, scale[1] * kMetresPerDegree, 1};
-    raster.unit = "m";
+    const bool guessed = raster.size.z > 1 && description.spacing[2] <= 0;
+    const bool ome = description.kind == Kind::Ome;
+    message(ctx, MessageLevel::Note,
+            path + ": cells of " + roundedText(s.x, 6) + " x " + roundedText(s.y, 6) +
+                (raster.size.z > 1 ? " x " + roundedText(s.z, 6) : "") +
+                (raster.unit.empty() ? "" : " " + raster.unit) + " by its " + nameOf(description.kind) +
+                (!guessed ? ""
+                 : ome    ? ", which has no distance of slices: that of columns is taken"
+                          : ", which has no distance of slices: 1 is taken, as ImageJ does") +
+                "; `pixelSize` sets them");
 }
 
-// ImageJ writes stacks over 4 GB as one page followed by the others, which TIFF does not record.
-void refuseContiguousStack(TIFF* file, const std::string& path) {
-    const char* text = nullptr;
-    if (!TIFFGetField(file, TIFFTAG_IMAGEDESCRIPTION, &text) || !text) return;
-    const std::string words = text;
-    const std::size_t images = words.find("images=");
-    if (words.compare(0, 7, "ImageJ=") != 0 || images == std::string::npos) return;
-    const std::size_t number = images + 7, end = words.find_first_not_of("0123456789", number);
-    int count = 0;
-    const bool several = parseWhole(words.substr(number, end - number), count) && count > 1 &&
-                         TIFFNumberOfDirectories(file) == 1;
-    if (several)
-        throw Error(ErrorCode::BadData, path +
-                                            ": is an ImageJ stack with one page and raw slices behind it; "
-                                            "save it as npy or in several files");
-}
-
-int countPages(TIFF* file, const Layout& first, const std::string& path) {
-    int pages = 1;
-    lastFailure.clear();
-    while (TIFFReadDirectory(file)) {
-        const Layout layout = layoutOf(file);
-        std::uint32_t kind = 0;
-        TIFFGetField(file, TIFFTAG_SUBFILETYPE, &kind);
-        if (kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) continue;  // a preview or a mask of the first
-        if (!(layout == first))
-            throw Error(ErrorCode::BadData,
-                        path + ": its pages differ in size or kind; a stack needs equal pages");
-        if (++pages >= 65535) break;
-        lastFailure.clear();
+// The opacity of a single image in a page of its own, as GDAL writes it.
+void applyMask(const std::string& path, TiffFile& file, const TiffContents& contents, const TiffPage& page,
+               Raster& raster, const RunContext& ctx) {
+    if (contents.masks.empty()) return;
+    const std::size_t number = contents.masks.front();
+    const TiffPage& mask = file.pages()[number];
+    const bool fits = raster.size.z == 1 && contents.masks.size() == 1 && mask.width == page.width &&
+                      mask.height == page.height && mask.samples == 1 && isStored(mask, true);
+    if (!fits) {
+        message(ctx, MessageLevel::Note, path + ": its mask pages are not applied");
+        return;
     }
-    // A page that cannot be read ends the file as its last page does, but for what libtiff says of it.
-    if (!lastFailure.empty())
-        throw Error(ErrorCode::BadData,
-                    path + ": truncated after page " + std::to_string(pages) + ": " + lastFailure);
-    return pages;
+    std::vector<float> opaque(raster.sampleCount());
+    file.select(number);
+    readTiffPage(path, file, mask, {0, 1}, true, ctx, opaque.data());
+    const std::size_t channels = std::size_t(raster.channels);
+    for (std::size_t i = 0; i < opaque.size(); ++i)
+        if (opaque[i] == 0)
+            std::fill_n(raster.values.begin() + std::ptrdiff_t(i * channels), channels, std::nanf(""));
+}
+
+// Stored values as those that are meant.
+void readMeaning(const std::string& path, const StackDescription& description, const TiffPage& page,
+                 Raster& raster, const RunContext& ctx) {
+    if (page.colour == TiffColour::WhiteIsZero && description.kind == Kind::ImageJ) {
+        message(ctx, MessageLevel::Note,
+                path +
+                    ": its stored values are read; ImageJ's inverting table (white is zero) changes only how "
+                    "they look");
+    } else if (page.colour == TiffColour::WhiteIsZero && isStored(page, true)) {
+        if (raster.white > 0)
+            for (float& value : raster.values) value = float(raster.white) - value;
+        else
+            message(ctx, MessageLevel::Note,
+                    path + ": says that white is zero, which is not applied to its kind of numbers");
+    }
+    if (!description.calibrated) return;
+    for (float& value : raster.values)
+        value = float(description.calibrationOffset + description.calibrationFactor * double(value));
+    raster.white = 0;
+    message(ctx, MessageLevel::Note,
+            path + ": values are " + roundedText(description.calibrationOffset, 9) + " + " +
+                roundedText(description.calibrationFactor, 9) +
+                " times the stored ones by its ImageJ description");
+}
+
+// @throw Error BadData (the file is too small for what its tags claim)
+void checkSize(const std::string& path, const TiffPage& page, const TiffContents& contents,
+               const TiffChoice& choice, std::size_t fileSize) {
+    const double bytes = double(page.width) * page.height * page.bits / 8 * (page.planes ? 1 : page.samples) *
+                         double(choice.pages.size());
+    // The strongest TIFF compression gives a thousandth.
+    const double most = contents.raw ? double(fileSize) : 4000.0 * double(fileSize) + 1e6;
+    if (bytes > most) throw Error(ErrorCode::BadData, path + ": truncated");
+}
+
+void readSlices(const std::string& path, const std::string& content, TiffFile& file,
+                const TiffContents& contents, const TiffChoice& choice, const TiffPage& page,
+                const RunContext& ctx, Raster& raster) {
+    const std::size_t channels = std::size_t(raster.channels);
+    const std::size_t slice = std::size_t(page.width) * page.height * channels;
+    const std::size_t bytes = std::size_t(page.width) * page.height * page.samples * (page.bits / 8u);
+    for (std::size_t i = 0; i < choice.pages.size(); ++i) {
+        throwIfCancelled(ctx);
+        float* out = raster.values.data() + slice * i;
+        if (contents.raw) {
+            readRawPage(path, file, page, choice.samples, content, page.dataOffset + choice.pages[i] * bytes,
+                        out);
+        } else {
+            file.select(choice.pages[i]);
+            readTiffPage(path, file, page, choice.samples, raster.stack, ctx, out);
+        }
+    }
 }
 
 }  // namespace
 
-Raster readTiff(const std::string& path, const std::string& content, const RunContext& ctx) {
-    TIFFSetErrorHandler(keepFailure);
-    TIFFSetWarningHandler(nullptr);
-    lastFailure.clear();
-    Source source{content};
-    const File file(TIFFClientOpen(path.c_str(), "rm", &source, readBytes, writeBytes, seek, closeNothing,
-                                   sizeOf, nullptr, nullptr),
-                    TIFFClose);
-    if (!file) throw Error(ErrorCode::BadData, path + ": not a TIFF image: " + lastFailure);
-    Layout layout = layoutOf(file.get());
-    if (layout.samples == 0) throw Error(ErrorCode::BadData, path + ": has no samples");
-    refuseContiguousStack(file.get(), path);
-    const int pages = countPages(file.get(), layout, path);
-    layout.stack = pages > 1;
-    PageReader reader(path, file.get(), ctx);
-    const int channels = reader.channels(layout);
-    // The strongest TIFF compression gives a thousandth.
-    const double bytes = double(layout.width) * layout.height * layout.bits / 8 * pages;
-    if (bytes > 4000.0 * double(content.size()) + 1e6) throw Error(ErrorCode::BadData, path + ": truncated");
-    Raster raster = makeRaster(path, layout.width, layout.height, pages, channels, ctx);
-    raster.rowsFromTop = pages == 1;
-    raster.stack = pages > 1;
-    SampleType type{};
-    raster.white = plainType(layout, type) ? whiteOf(type) : 255;
-    const std::size_t page = std::size_t(layout.width) * layout.height * std::size_t(channels);
-    TIFFSetDirectory(file.get(), 0);
-    readGeography(file.get(), raster);
-    for (int done = 0; done < pages; TIFFReadDirectory(file.get())) {
-        std::uint32_t kind = 0;
-        TIFFGetField(file.get(), TIFFTAG_SUBFILETYPE, &kind);
-        if (done > 0 && kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) continue;
-        throwIfCancelled(ctx);
-        reader.read(layout, channels, raster.values.data() + page * std::size_t(done));
-        ++done;
-    }
-    TIFFSetDirectory(file.get(), 0);
-    dropNoData(file.get(), raster);
+Raster readTiff(const std::string& path, const std::string& content, const RasterReadOptions& options,
+                const RunContext& ctx) {
+    TiffFile file(path, content);
+    TiffContents contents = contentsOf(path, file, options, ctx);
+    const std::size_t number = chosen(path, contents, options, ctx);
+    const TiffChoice& choice = contents.choices[number];
+    if (number >= contents.described) contents.description = StackDescription();
+    const std::size_t head = contents.raw ? 0 : choice.pages.front();
+    const TiffPage& page = file.pages()[head];
+    checkSize(path, page, contents, choice, content.size());
+    Raster raster = makeRaster(path, page.width, page.height, std::int64_t(choice.pages.size()),
+                               choice.samples.channels, ctx);
+    raster.stack = choice.pages.size() > 1;
+    raster.rowsFromTop = !raster.stack;
+    raster.white = whiteOf(page, raster.stack);
+    for (const TiffChoice& each : contents.choices)
+        if (!each.name.empty()) raster.arrays.push_back(each.name);
+    readSlices(path, content, file, contents, choice, page, ctx, raster);
+    file.select(head);
+    dropNoData(file, raster);
+    readGeography(path, file, raster, ctx);
+    readSpacing(path, contents.description, page, raster, ctx);
+    readMeaning(path, contents.description, page, raster, ctx);
+    applyMask(path, file, contents, page, raster, ctx);
+    turnUpright(path, raster, page.orientation, "orientation tag", ctx);
     return raster;
 }
 

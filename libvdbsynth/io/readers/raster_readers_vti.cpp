@@ -1,259 +1,278 @@
 // VTK ImageData in XML.
 #include "libvdbsynth/base/checked_product.h"
 #include "libvdbsynth/base/error.h"
-#include "libvdbsynth/io/readers/gzip.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/readers/raster_readers.h"
-#include "libvdbsynth/io/readers/text_scanner.h"
+#include "libvdbsynth/io/readers/raster_readers_vti_steps.h"
+#include "libvdbsynth/raster/raster_alignment.h"
 
 #include <pugixml.hpp>
 
 #include <algorithm>
-#include <map>
+#include <array>
+#include <cmath>
 
 namespace vdbsynth {
 namespace {
-
-// Data encoding from the file's root element.
-struct Encoding {
-    bool swap = false, compressed = false, wideHeader = false;
-    std::string appended;  // raw or still base64
-    bool appendedBase64 = false;
-};
 
 [[noreturn]] void refuse(const std::string& path, const std::string& what) {
     throw Error(ErrorCode::BadData, path + ": " + what);
 }
 
-// Decodes base64 to its end, to padding or to `most` bytes. @return the number of characters used
-std::size_t decodeBase64(const std::string& path, const std::string& text, std::size_t at, std::size_t most,
-                         std::string& bytes) {
-    const std::size_t start = at;
-    std::uint32_t bits = 0;
-    int have = 0;
-    for (; at < text.size() && bytes.size() < most; ++at) {
-        const char c = text[at];
-        int value = 0;
-        if (c >= 'A' && c <= 'Z')
-            value = c - 'A';
-        else if (c >= 'a' && c <= 'z')
-            value = c - 'a' + 26;
-        else if (c >= '0' && c <= '9')
-            value = c - '0' + 52;
-        else if (c == '+')
-            value = 62;
-        else if (c == '/')
-            value = 63;
-        else if (c == '=' || c == ' ' || c == '\n' || c == '\r' || c == '\t')
-            continue;
-        else
-            refuse(path, "its base64 is invalid");
-        bits = bits << 6 | std::uint32_t(value);
-        have += 6;
-        if (have < 8) continue;
-        have -= 8;
-        bytes += char(bits >> have & 255);
-    }
-    return at - start;
-}
-
-// A block of binary data as stored in the file: a header of sizes, then bytes, perhaps in compressed pieces.
-class BlockReader {
-public:
-    BlockReader(const std::string& path, const Encoding& encoding, const std::string& text, std::size_t at,
-                bool base64)
-        : mPath(path), mEncoding(encoding), mText(text), mAt(at), mBase64(base64) {}
-
-    std::string read(std::size_t expected) {
-        const std::size_t word = mEncoding.wideHeader ? 8 : 4;
-        if (!mEncoding.compressed) {
-            // Header and data are one run of base64.
-            const std::string bytes = take(word + expected);
-            if (number(bytes, 0) < expected) truncated();
-            return bytes.substr(word);
-        }
-        std::string header = peek(3 * word);
-        const std::uint64_t blocks = number(header, 0), size = number(header, 1), last = number(header, 2);
-        if (blocks > mText.size() / word || size > 4000ull * mText.size() + 1000000) truncated();
-        header = take((3 + std::size_t(blocks)) * word);
-        finishRun();
-        std::size_t packed = 0;
-        for (std::size_t i = 0; i < blocks; ++i)
-            packed += std::size_t(std::min<std::uint64_t>(number(header, 3 + i), mText.size()));
-        const std::string bytes = take(packed);
-        std::string all;
-        std::size_t from = 0;
-        for (std::size_t i = 0; i < blocks; ++i) {
-            const std::size_t length = std::size_t(number(header, 3 + i));
-            const std::size_t made = std::size_t(i + 1 == blocks && last > 0 ? last : size);
-            all += inflateZlib(mPath, bytes.substr(from, length), made);
-            from += length;
-        }
-        if (all.size() < expected) truncated();
-        return all;
-    }
-
-private:
-    [[noreturn]] void truncated() const {
-        refuse(mPath, "truncated, or its data array is smaller than its extent");
-    }
-    std::uint64_t number(const std::string& bytes, std::size_t index) const {
-        const std::size_t word = mEncoding.wideHeader ? 8 : 4;
-        std::uint64_t value = 0;
-        if ((index + 1) * word > bytes.size()) truncated();
-        std::string raw = bytes.substr(index * word, word);
-        if (mEncoding.swap) std::reverse(raw.begin(), raw.end());
-        std::memcpy(&value, raw.data(), word);
-        return value;
-    }
-    std::string peek(std::size_t count) {
-        const std::size_t at = mAt;
-        std::string bytes = take(count);
-        mAt = at;
-        return bytes;
-    }
-    std::string take(std::size_t count) {
-        std::string bytes;
-        if (count > mText.size()) truncated();
-        if (mBase64) {
-            mAt += decodeBase64(mPath, mText, mAt, count, bytes);
-        } else if (mAt <= mText.size() && count <= mText.size() - mAt) {
-            bytes = mText.substr(mAt, count);
-            mAt += count;
-        }
-        if (bytes.size() < count) truncated();
-        return bytes;
-    }
-    // A run of base64 ends with its padding.
-    void finishRun() {
-        while (mBase64 && mAt < mText.size() && mText[mAt] == '=') ++mAt;
-    }
-
-    const std::string& mPath;
-    const Encoding& mEncoding;
-    const std::string& mText;
-    std::size_t mAt;
-    bool mBase64;
-};
-
-SampleType typeOf(const std::string& path, const std::string& name) {
-    static const std::map<std::string, SampleType> types{
-        {"UInt8", SampleType::U8},   {"Int8", SampleType::I8},    {"UInt16", SampleType::U16},
-        {"Int16", SampleType::I16},  {"UInt32", SampleType::U32}, {"Int32", SampleType::I32},
-        {"UInt64", SampleType::U64}, {"Int64", SampleType::I64},  {"Float32", SampleType::F32},
-        {"Float64", SampleType::F64}};
-    const auto found = types.find(name);
-    if (found == types.end()) refuse(path, "its data is of type " + name + ", which is not supported");
-    return found->second;
-}
-
-// Raw appended data is not XML: it is cut out before the rest is parsed.
-std::string cutAppended(const std::string& content, Encoding& encoding) {
-    const std::size_t tag = content.find("<AppendedData");
-    if (tag == std::string::npos) return content;
-    const std::size_t open = content.find('>', tag),
-                      mark = open == std::string::npos ? open : content.find('_', open);
-    if (mark == std::string::npos) return content;
-    encoding.appendedBase64 = content.substr(tag, open - tag).find("base64") != std::string::npos;
-    std::size_t end = content.rfind("</AppendedData>");
-    if (end == std::string::npos || end < mark) end = content.size();
-    encoding.appended = content.substr(mark + 1, end - mark - 1);
-    return content.substr(0, mark) +
-           (end < content.size() ? content.substr(end) : "</AppendedData></VTKFile>");
-}
-
-std::vector<double> numbersOf(const char* text) {
+// Numbers of an attribute; none if one of them is not finite.
+std::vector<double> numbersOf(std::string_view text) {
     std::vector<double> numbers;
-    std::string rest = text;
     std::size_t at = 0;
-    while ((at = rest.find_first_not_of(" \t\n\r", at)) != std::string::npos) {
-        const std::size_t end = std::min(rest.find_first_of(" \t\n\r", at), rest.size());
-        float value = 0;
-        if (!parseAnyReal(std::string_view(rest).substr(at, end - at), value)) return {};
-        numbers.push_back(double(value));
+    while ((at = text.find_first_not_of(" \t\n\r", at)) != std::string_view::npos) {
+        const std::size_t end = std::min(text.find_first_of(" \t\n\r", at), text.size());
+        double value = 0;
+        if (!parseReal(text.substr(at, end - at), value)) return {};
+        numbers.push_back(value);
         at = end;
     }
     return numbers;
 }
 
-// The array of scalars that the file marks, else its first; of the points, else of the cells.
-pugi::xml_node chooseArray(const std::string& path, const pugi::xml_node& piece, bool& cells) {
-    for (const char* kind : {"PointData", "CellData"}) {
-        const pugi::xml_node data = piece.child(kind);
-        cells = std::string(kind) == "CellData";
-        const pugi::xml_node marked =
-            data.find_child_by_attribute("DataArray", "Name", data.attribute("Scalars").as_string(""));
-        if (marked) return marked;
-        if (data.child("DataArray")) return data.child("DataArray");
+// First and last point along each axis.
+struct Extent {
+    std::array<std::int64_t, 3> first{}, last{};
+
+    std::int64_t side(std::size_t axis, bool cells) const {
+        const std::int64_t points = last[axis] - first[axis] + 1;
+        // A flat image has one layer of cells.
+        return cells && points > 1 ? points - 1 : points;
     }
-    refuse(path, "has no data array");
+    std::int64_t count(bool cells) const {
+        return checkedProduct({side(0, cells), side(1, cells), side(2, cells)}).value_or(-1);
+    }
+};
+
+Extent extentOf(const std::string& path, const char* text) {
+    const std::vector<double> numbers = numbersOf(text);
+    if (numbers.size() != 6) refuse(path, "its Extent is not six numbers");
+    Extent extent;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        extent.first[axis] = std::int64_t(std::clamp(numbers[2 * axis], -1e15, 1e15));
+        extent.last[axis] = std::int64_t(std::clamp(numbers[2 * axis + 1], -1e15, 1e15));
+        if (extent.last[axis] < extent.first[axis]) refuse(path, "its Extent is empty");
+    }
+    return extent;
 }
 
-void readArray(const std::string& path, const pugi::xml_node& array, const Encoding& encoding,
-               Raster& raster) {
-    const std::string format = array.attribute("format").as_string("ascii");
-    const SampleType type = typeOf(path, array.attribute("type").as_string());
-    raster.white = whiteOf(type);
-    if (array.attribute("NumberOfComponents").as_int(1) != 1)
-        refuse(path, "holds vectors; one value a point is read");
-    const std::string text = array.text().as_string();
-    const std::size_t expected = raster.values.size() * bytesOf(type);
-    if (format == "ascii") {
-        TextScanner scanner(path, text, '\0');
-        for (float& value : raster.values) value = float(scanner.real());
+std::vector<VtkArray> arraysOf(const std::string& path, const pugi::xml_node& piece) {
+    constexpr std::size_t kMostArrays = 1000;
+    std::vector<VtkArray> arrays;
+    for (const char* kind : {"PointData", "CellData"})
+        for (const pugi::xml_node& node : piece.child(kind).children("DataArray")) {
+            VtkArray array;
+            array.name = printable(node.attribute("Name").as_string(), 200);
+            if (array.name.empty()) array.name = "array" + std::to_string(arrays.size() + 1);
+            array.type = node.attribute("type").as_string();
+            array.format = node.attribute("format").as_string("ascii");
+            array.text = array.format == "appended" ? "" : node.text().as_string();
+            array.components = node.attribute("NumberOfComponents").as_int(1);
+            array.offset = std::size_t(node.attribute("offset").as_ullong(0));
+            array.cells = std::string(kind) == "CellData";
+            const bool taken = std::any_of(arrays.begin(), arrays.end(),
+                                           [&](const VtkArray& other) { return other.name == array.name; });
+            if (taken && array.cells) array.name = "cells:" + array.name;
+            if (array.components < 1 || array.components > 1000)
+                refuse(path, "its array " + array.name + " has " + std::to_string(array.components) +
+                                 " components; 1 to 1000 are read");
+            arrays.push_back(array);
+            if (arrays.size() > kMostArrays)
+                refuse(path, "has over " + std::to_string(kMostArrays) + " arrays");
+        }
+    return arrays;
+}
+
+// The scalars that the file marks, else its first; of the points, else of the cells.
+std::size_t standardArray(const pugi::xml_node& piece, const std::vector<VtkArray>& arrays) {
+    for (const bool cells : {false, true}) {
+        const std::string marked =
+            piece.child(cells ? "CellData" : "PointData").attribute("Scalars").as_string();
+        std::size_t first = arrays.size();
+        for (std::size_t i = 0; i < arrays.size(); ++i) {
+            const VtkArray& array = arrays[i];
+            if (array.cells != cells || array.components != 1 || array.type == "Bit") continue;
+            if (!marked.empty() && array.name == printable(marked, 200)) return i;
+            const bool ghosts = array.name == "vtkGhostType" || array.name == "vtkGhostLevels";
+            if (first == arrays.size() && !ghosts) first = i;
+        }
+        if (first < arrays.size()) return first;
+    }
+    return arrays.size();
+}
+
+std::size_t choose(const std::string& path, const pugi::xml_node& piece, const std::vector<VtkArray>& arrays,
+                   std::vector<std::string>& names, const RasterReadOptions& options, const RunContext& ctx) {
+    for (const VtkArray& array : arrays) names.push_back(array.name);
+    if (arrays.empty()) refuse(path, "has no data array");
+    const std::size_t standard = standardArray(piece, arrays);
+    if (standard == arrays.size() && options.array.empty())
+        refuse(path, "holds no scalars but vectors (" + names.front() +
+                         (names.size() > 1 ? " and more" : "") + "); `grid` " + names.front() +
+                         " reads their lengths");
+    const std::size_t chosen = chosenArray(path, names, standard, options, ctx);
+    const VtkArray& array = arrays[chosen];
+    if (array.components > 1)
+        message(ctx, MessageLevel::Note,
+                path + ": " + array.name + " holds vectors of " + std::to_string(array.components) +
+                    " components; their lengths are read");
+    if (array.cells)
+        message(ctx, MessageLevel::Note,
+                path + ": " + array.name + " holds values of cells, which lie at the cells' centres");
+    return chosen;
+}
+
+// The pieces of the image, whose union is `whole`.
+struct Piece {
+    Extent extent;
+    VtkArray array;
+};
+
+void copyPiece(const Piece& piece, const std::vector<float>& values, const Extent& whole, bool cells,
+               Raster& raster, std::vector<bool>& covered) {
+    std::size_t from = 0;
+    const auto begin = [&](std::size_t axis) { return int(piece.extent.first[axis] - whole.first[axis]); };
+    const auto end = [&](std::size_t axis) { return begin(axis) + int(piece.extent.side(axis, cells)); };
+    for (int z = begin(2); z < end(2); ++z)
+        for (int y = begin(1); y < end(1); ++y)
+            for (int x = begin(0); x < end(0); ++x) {
+                raster.values[raster.index(x, y, z)] = values[from++];
+                covered[raster.index(x, y, z)] = true;
+            }
+}
+
+void readPieces(const std::string& path, const std::vector<Piece>& pieces, const Extent& whole,
+                const VtkEncoding& encoding, Raster& raster, const RunContext& ctx) {
+    const bool cells = pieces.front().array.cells;
+    if (pieces.size() == 1) {
+        raster.values = readVtkArray(path, pieces.front().array, encoding, raster.values.size(), ctx);
         return;
     }
-    std::string bytes;
-    if (format == "appended") {
-        const std::size_t at = std::size_t(array.attribute("offset").as_ullong(0));
-        bytes = BlockReader(path, encoding, encoding.appended, at, encoding.appendedBase64).read(expected);
-    } else {
-        bytes = BlockReader(path, encoding, text, 0, true).read(expected);
+    std::fill(raster.values.begin(), raster.values.end(), std::nanf(""));
+    std::vector<bool> covered(raster.values.size(), false);
+    for (const Piece& piece : pieces)
+        copyPiece(piece,
+                  readVtkArray(path, piece.array, encoding, std::size_t(piece.extent.count(cells)), ctx),
+                  whole, cells, raster, covered);
+    const auto missing = std::count(covered.begin(), covered.end(), false);
+    if (missing > 0)
+        message(ctx, MessageLevel::Warning,
+                path + ": its pieces leave " + std::to_string(missing) + " samples without data");
+}
+
+Extent unionOf(const std::vector<Piece>& pieces) {
+    Extent whole = pieces.front().extent;
+    for (const Piece& piece : pieces)
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            whole.first[axis] = std::min(whole.first[axis], piece.extent.first[axis]);
+            whole.last[axis] = std::max(whole.last[axis], piece.extent.last[axis]);
+        }
+    return whole;
+}
+
+// Text or bytes of a sample; zlib reduces these to a thousandth at best.
+void requireFits(const std::string& path, const std::vector<Piece>& pieces, const Extent& whole,
+                 std::uint64_t content) {
+    const VtkArray& array = pieces.front().array;
+    if (!productFits({whole.side(0, array.cells), whole.side(1, array.cells), whole.side(2, array.cells),
+                      array.components},
+                     content))
+        refuse(path, "truncated: its Extent claims more samples than the file can hold");
+    // Pieces share the points of their faces.
+    double sum = 0;
+    for (const Piece& piece : pieces) sum += double(piece.extent.count(array.cells));
+    if (sum > 8.0 * double(whole.count(array.cells))) refuse(path, "its pieces overlap");
+}
+
+void readEncoding(const std::string& path, const pugi::xml_node& root, VtkEncoding& encoding) {
+    const std::string compressor = root.attribute("compressor").as_string();
+    encoding.compressed = !compressor.empty();
+    if (encoding.compressed && compressor != "vtkZLibDataCompressor")
+        refuse(path, "is compressed with " + printable(compressor) +
+                         "; only zlib is supported: write it with vtkZLibDataCompressor or without one");
+    encoding.swap = std::string(root.attribute("byte_order").as_string()) == "BigEndian";
+    encoding.wideHeader = std::string(root.attribute("header_type").as_string()) == "UInt64";
+}
+
+// From columns, rows and slices of the samples to the world.
+Affine placeOf(const std::string& path, const pugi::xml_node& image, const Extent& whole, bool cells) {
+    std::vector<double> spacing = numbersOf(image.attribute("Spacing").as_string("1 1 1")),
+                        origin = numbersOf(image.attribute("Origin").as_string("0 0 0")),
+                        direction = numbersOf(image.attribute("Direction").as_string("1 0 0 0 1 0 0 0 1"));
+    if (spacing.size() != 3 || origin.size() != 3)
+        refuse(path, "its Spacing and Origin must be three numbers each");
+    if (direction.size() != 9) refuse(path, "its Direction must be nine numbers");
+    double thinnest = 0;
+    for (const double step : spacing)
+        if (step > 0 && !(thinnest > 0 && thinnest < step)) thinnest = step;
+    Affine map = kIdentity;
+    for (std::size_t i = 0; i < 3; ++i) map[12 + i] = origin[i];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        // Flat images are written with a thickness of zero.
+        const double step = spacing[axis] == 0 && whole.side(axis, false) == 1 ? thinnest : spacing[axis];
+        const double first = double(whole.first[axis]) + (cells && whole.side(axis, false) > 1 ? 0.5 : 0);
+        for (std::size_t i = 0; i < 3; ++i) {
+            map[4 * axis + i] = direction[3 * i + axis] * step;
+            map[12 + i] += map[4 * axis + i] * first;
+        }
     }
-    toFloats(bytes.data(), raster.values.size(), type, encoding.swap, raster.values.data());
+    return map;
+}
+
+std::vector<Piece> piecesOf(const std::string& path, const pugi::xml_node& image, std::size_t chosen,
+                            const VtkArray& array) {
+    constexpr std::size_t kMostPieces = 4096;
+    std::vector<Piece> pieces;
+    for (const pugi::xml_node& node : image.children("Piece")) {
+        Piece piece;
+        piece.extent =
+            extentOf(path, node.attribute("Extent").as_string(image.attribute("WholeExtent").as_string()));
+        const std::vector<VtkArray> arrays = arraysOf(path, node);
+        if (chosen >= arrays.size() || arrays[chosen].name != array.name ||
+            arrays[chosen].cells != array.cells || arrays[chosen].components != array.components)
+            refuse(path, "its pieces hold different arrays; write it as one piece");
+        piece.array = arrays[chosen];
+        pieces.push_back(std::move(piece));
+        if (pieces.size() > kMostPieces)
+            refuse(path, "is in over " + std::to_string(kMostPieces) + " pieces; write it as one");
+    }
+    return pieces;
 }
 
 }  // namespace
 
-Raster readVti(const std::string& path, const std::string& content, const RunContext& ctx) {
-    Encoding encoding;
+Raster readVti(const std::string& path, const std::string& content, const RasterReadOptions& options,
+               const RunContext& ctx) {
+    VtkEncoding encoding;
     const std::string xml = cutAppended(content, encoding);
     pugi::xml_document document;
     const pugi::xml_parse_result parsed = document.load_buffer(xml.data(), xml.size());
     if (!parsed) refuse(path, std::string("not a whole XML file: ") + parsed.description());
     const pugi::xml_node root = document.child("VTKFile"), image = root.child("ImageData"),
-                         piece = image.child("Piece");
-    if (!piece) refuse(path, "not a VTK image (VTKFile, ImageData, Piece)");
-    if (piece.next_sibling("Piece")) refuse(path, "is in several pieces; write it as one");
-    const std::string compressor = root.attribute("compressor").as_string();
-    encoding.compressed = !compressor.empty();
-    if (encoding.compressed && compressor != "vtkZLibDataCompressor")
-        refuse(path, "is compressed with " + compressor + "; only zlib is supported");
-    encoding.swap = std::string(root.attribute("byte_order").as_string()) == "BigEndian";
-    encoding.wideHeader = std::string(root.attribute("header_type").as_string()) == "UInt64";
-    const std::vector<double> extent =
-        numbersOf(piece.attribute("Extent").as_string(image.attribute("WholeExtent").as_string()));
-    if (extent.size() != 6) refuse(path, "its Extent is not six numbers");
-    bool cells = false;
-    const pugi::xml_node array = chooseArray(path, piece, cells);
-    std::int64_t sides[3];
-    for (std::size_t i = 0; i < 3; ++i)
-        sides[i] = std::int64_t(std::clamp(extent[2 * i + 1] - extent[2 * i] + (cells ? 0 : 1), -1e15, 1e15));
-    // Text or bytes of a sample; zlib reduces these to a thousandth at best.
-    if (!productFits({sides[0], sides[1], sides[2]}, (encoding.compressed ? 1100 : 1) * content.size()))
-        refuse(path, "truncated, or its Extent is empty");
-    Raster raster = makeRaster(path, sides[0], sides[1], sides[2], 1, ctx);
+                         first = image.child("Piece");
+    const std::string kind = root.attribute("type").as_string();
+    if (!kind.empty() && kind != "ImageData")
+        refuse(path, "is a VTK file of kind " + printable(kind) + "; only ImageData is read");
+    if (!first) refuse(path, "not a VTK image (VTKFile, ImageData, Piece)");
+    readEncoding(path, root, encoding);
+    std::vector<std::string> names;
+    const std::vector<VtkArray> arrays = arraysOf(path, first);
+    const std::size_t chosen = choose(path, first, arrays, names, options, ctx);
+    const VtkArray& array = arrays[chosen];
+    const std::vector<Piece> pieces = piecesOf(path, image, chosen, array);
+    const Extent whole = unionOf(pieces);
+    requireFits(path, pieces, whole, (encoding.compressed ? 1100 : 1) * content.size());
+    Raster raster = makeRaster(path, whole.side(0, array.cells), whole.side(1, array.cells),
+                               whole.side(2, array.cells), 1, ctx);
+    raster.white = whiteOfVtkType(path, array);
+    readPieces(path, pieces, whole, encoding, raster, ctx);
+    raster = alignedToWorld(path, std::move(raster), placeOf(path, image, whole, array.cells), ctx);
     raster.stack = true;
-    const std::vector<double> spacing = numbersOf(image.attribute("Spacing").as_string("1 1 1")),
-                              origin = numbersOf(image.attribute("Origin").as_string("0 0 0"));
-    if (spacing.size() != 3 || origin.size() != 3)
-        refuse(path, "its Spacing and Origin must be three numbers each");
-    raster.knownSpacing = true;
-    for (int axis = 0; axis < 3; ++axis) {
-        raster.spacing[axis] = spacing[std::size_t(axis)];
-        raster.origin[axis] = origin[std::size_t(axis)] +
-                              raster.spacing[axis] * (extent[std::size_t(2 * axis)] + (cells ? 0.5 : 0));
-    }
-    readArray(path, array, encoding, raster);
+    raster.arrays = names;
+    sayTurn(path, raster, ctx);
     return raster;
 }
 

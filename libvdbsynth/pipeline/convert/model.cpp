@@ -1,5 +1,6 @@
 #include "libvdbsynth/pipeline/convert/model.h"
 #include "libvdbsynth/raster/height_field.h"
+#include "libvdbsynth/raster/raster_alignment.h"
 #include "libvdbsynth/raster/volume_field.h"
 
 #include "libvdbsynth/base/error.h"
@@ -10,12 +11,14 @@
 #include "libvdbsynth/io/point_file.h"
 #include "libvdbsynth/io/raster_file.h"
 #include "libvdbsynth/pipeline/convert/field_model_steps.h"
+#include "libvdbsynth/pipeline/convert/model_steps.h"
 #include "libvdbsynth/vdb/convert/attribute_grids.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
 #include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/ChangeBackground.h>
 
 #include <algorithm>
 #include <cmath>
@@ -71,8 +74,15 @@ std::vector<Vec3f> usedPoints(const Mesh& mesh) {
     return points;
 }
 
+void scalePoints(std::vector<Vec3f>& points, Vec3d& origin, double scale) {
+    if (scale == 1) return;
+    origin = origin * scale;
+    for (Vec3f& p : points) p = cast<float>(cast<double>(p) * scale);
+}
+
 LevelSet loadMesh(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
-    const Mesh mesh = readMesh(path, ctx);
+    Mesh mesh = readMesh(path, ctx);
+    scalePoints(mesh.points, mesh.origin, options.unitScale);
     const double voxelSize = chooseVoxelSize(path, usedPoints(mesh), options, ctx);
     LevelSet model = asModel(meshToSolid(mesh, voxelSize, options.halfWidth, path, options.solid, ctx), path);
     if (options.keepSource) model.source = std::make_shared<const Mesh>(mesh);
@@ -85,6 +95,7 @@ LevelSet loadPoints(const std::string& path, const ModelOptions& options, const 
     if (file.invalid > 0)
         message(ctx, MessageLevel::Note,
                 path + ": " + std::to_string(file.invalid) + " points without finite coordinates left out");
+    scalePoints(file.cloud.points, file.cloud.origin, options.unitScale);
     // Outliers would make the voxels too large.
     PointCloud core = file.cloud;
     dropOutliers(core, ctx);
@@ -107,12 +118,42 @@ LevelSet atVoxelSize(const std::string& path, const LevelSet& model, const Model
     if (std::abs(wanted - present) <= 1e-6 * present) return model;
     message(ctx, MessageLevel::Note,
             path + ": resampled from voxels of " + roundedText(present, 6) + " to " + roundedText(wanted, 6));
-    return resampled(model, wanted, ctx);
+    return resampled(model, wanted, ctx, path);
+}
+
+// Voxels of the field's directions and origin; a rotation stays in the transform, so nothing is resampled.
+void placeInWorld(const RasterField& field, openvdb::FloatGrid& grid) {
+    const Vec3d& o = field.origin;
+    if (!runAlongWorld(field.axes)) {
+        // OpenVDB multiplies from the left: the rows are the steps from voxel to voxel.
+        openvdb::Mat4d matrix = openvdb::Mat4d::identity();
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) matrix(i, j) = field.axes[std::size_t(i)][j] * field.voxelSize;
+        grid.setTransform(openvdb::math::Transform::createLinearTransform(matrix));
+    }
+    if (!(o.x == 0 && o.y == 0 && o.z == 0)) grid.transform().postTranslate({o.x, o.y, o.z});
+}
+
+void sayLostHeights(const std::string& path, const Raster& raster, const RasterField& field,
+                    const RunContext& ctx) {
+    if (field.lostShare < 0.001) return;
+    const std::string text =
+        path + ": " + roundedText(100 * field.lostShare, 2) +
+        " % of its pixels lie farther than a voxel from the surface, as their details are smaller; "
+        "`resolution` " +
+        std::to_string(std::max(raster.size.x, raster.size.y)) + " keeps them";
+    if (field.lostShare > 0.5) throw Error(ErrorCode::Unusable, text);
+    message(ctx, MessageLevel::Warning, text);
 }
 
 // An image as a slab, a volume by its threshold or labels; both have a domain.
 LevelSet loadRaster(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
-    const Raster raster = readRaster(path, ctx);
+    Raster raster = readRaster(path, {options.grid}, ctx);
+    if (options.unitScale != 1) {
+        raster.spacing = raster.spacing * options.unitScale;
+        raster.origin = raster.origin * options.unitScale;
+        raster.unit.clear();
+    }
     const bool image = !raster.stack && raster.size.z == 1 && !options.imageAsVolume;
     if (image && (options.volume.threshold || !options.volume.labels.empty()))
         throw Error(ErrorCode::InvalidOption,
@@ -124,10 +165,10 @@ LevelSet loadRaster(const std::string& path, const ModelOptions& options, const 
     const RasterField field =
         image ? heightField(path, raster, heights, ctx) : volumeField(path, raster, options.volume, ctx);
     if (!field.description.empty()) message(ctx, MessageLevel::Note, path + ": " + field.description);
+    sayLostHeights(path, raster, field, ctx);
     LevelSet model = modelFromField(field.field, kRasterFieldLimit, /* exact= */ false, field.domain,
                                     field.voxelSize, path, "no part of it is solid", ctx);
-    const Vec3d& o = field.origin;
-    if (!(o.x == 0 && o.y == 0 && o.z == 0)) model.grid->transform().postTranslate({o.x, o.y, o.z});
+    placeInWorld(field, *model.grid);
     return image ? model : atVoxelSize(path, model, options, ctx);
 }
 
@@ -148,24 +189,46 @@ void requireModelPath(const std::string& path) {
         if (extensionOf(path) == archive)
             throw Error(ErrorCode::InvalidOption,
                         path + ": is an archive; unpack it and name one of its files (.gz is read directly)");
+    for (const char* part : {"hdr", "img"})
+        if (readExtensionOf(path) == part)
+            throw Error(ErrorCode::InvalidOption,
+                        path + ": is one of a pair of files (Analyze 7.5 or NIfTI); convert it to one .nii");
+    for (const char* scan : {"las", "laz", "e57", "ptx", "copc"})
+        if (readExtensionOf(path) == scan)
+            throw Error(ErrorCode::InvalidOption,
+                        path + ": ." + scan +
+                            " files are not read; save the points as .ply, .pcd or .xyz, for example with "
+                            "CloudCompare or PDAL");
     throw Error(ErrorCode::InvalidOption,
                 path +
                     ": unknown extension; models are .vdb, meshes .obj, .ply, .stl, .off, .gltf, .glb, "
-                    ".mesh, points .ply, .xyz, .pwn, .pcd, " +
-                    kRasterExtensions + ", each also with .gz");
+                    ".mesh, points .ply, " +
+                    kPointExtensions + ", " + kRasterExtensions + ", each also with .gz");
 }
 
 namespace {
 
+// A level set's values are lengths, so they change with the unit.
+FloatGridPtr inUnit(const openvdb::FloatGrid& grid, double scale) {
+    const openvdb::FloatGrid::Ptr scaled = grid.deepCopy();
+    for (auto it = scaled->beginValueAll(); it; ++it) it.setValue(float(double(*it) * scale));
+    openvdb::tools::changeBackground(scaled->tree(), float(double(grid.background()) * scale));
+    scaled->transform().postScale(scale);
+    return scaled;
+}
+
 LevelSet loaded(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
-    if (isPointPath(path) || holdsPoints(path)) return loadPoints(path, options, ctx);
+    const bool asRaster = options.imageAsVolume && isRasterPath(path);
+    if (isPointPath(path) || (!asRaster && holdsPoints(path))) return loadPoints(path, options, ctx);
     if (isMeshPath(path)) return loadMesh(path, options, ctx);
     if (isRasterPath(path)) return loadRaster(path, options, ctx);
     VdbReadOptions read;
     read.gridName = options.grid;
     read.iso = options.iso;
     const std::vector<GridPtr> grids = readVdbGrids(path, ctx);
-    LevelSet model = atVoxelSize(path, modelFromGrids(path, grids, read, ctx), options, ctx);
+    LevelSet model = modelFromGrids(path, grids, read, ctx);
+    if (options.unitScale != 1) model.grid = inUnit(*model.grid, options.unitScale);
+    model = atVoxelSize(path, model, options, ctx);
     if (options.carry) {
         // All except the one that became the model.
         const GridPtr used = pickedGrid(path, grids, read);
@@ -182,6 +245,8 @@ void validate(const ModelOptions& options) {
                   roundedText(options.voxelSize, 6), "above 0 (world)");
     requireOption(options.resolution == 0 || (options.resolution >= 2 && options.resolution <= 100000),
                   "resolution", std::to_string(options.resolution), "a whole number from 2 to 100000");
+    requireOption(options.unitScale > 0 && options.unitScale < 1e30, "unitScale",
+                  roundedText(options.unitScale, 6), "above 0");
     requireHalfWidth(options.halfWidth);
     validate(options.solid);
     VdbReadOptions read;
@@ -194,6 +259,7 @@ void validate(const ModelOptions& options) {
 LevelSet loadModel(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
     requireModelPath(path);
     validate(options);
+    noteUnusedOptions(path, options, ctx);
     return withThreads(ctx, [&] { return loaded(path, options, ctx); });
 }
 

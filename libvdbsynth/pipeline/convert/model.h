@@ -15,13 +15,17 @@ struct ModelOptions {
                            ///< note. A VDB is resampled.
     double halfWidth = 3;  ///< [voxels] of the level set made from a mesh, 1.5..100
     SolidOptions solid;    ///< how to treat meshes that are not watertight
-    std::string grid;      ///< which grid of a VDB file; empty: see VdbReadOptions
+    std::string grid;      ///< which grid of a VDB file or array of a raster file; empty: see VdbReadOptions
+                           ///< and RasterReadOptions
     std::optional<double> iso;  ///< makes a fog volume a solid
     HeightOptions heights;      ///< of images; its voxel size and resolution are those above
     VolumeOptions volume;       ///< of volumes
     bool carry = false;         ///< fills LevelSet::attributes from a VDB's other grids, or the attributes of
                                 ///< vertices and points
     bool keepSource = false;    ///< keeps a mesh in LevelSet::source
+    /// The file's unit in that of the result: 1000 reads metres as millimetres. Multiplies all coordinates,
+    /// above 0. Sizes in these options are in the result's unit.
+    double unitScale = 1;
     bool imageAsVolume = false;  ///< reads an image as a volume of one slice
 };
 

@@ -65,6 +65,17 @@ void writeHeights(const LevelSet& model, const std::string& path, const std::str
     writeGreyPng(temporary, image.columns, image.rows, image.heights);
 }
 
+// STL has floats only, which far from zero are no finer than some step.
+void warnOfSteps(const std::string& path, const Mesh& mesh, const RunContext& ctx) {
+    const double farthest =
+        std::max({std::abs(mesh.origin.x), std::abs(mesh.origin.y), std::abs(mesh.origin.z)});
+    if (farthest == 0) return;
+    message(ctx, MessageLevel::Warning,
+            path + ": so far from zero the coordinates of .stl have steps of " +
+                roundedText(std::ldexp(1.0, std::ilogb(farthest) - 23), 2) +
+                "; .ply, .obj, .off and .glb keep them");
+}
+
 void writeOne(const LevelSet& model, const std::string& path, const std::string& temporary,
               const ModelOutputOptions& options, std::optional<Mesh>& mesh, const RunContext& ctx) {
     if (extensionOf(path) == "vdb") {
@@ -79,7 +90,7 @@ void writeOne(const LevelSet& model, const std::string& path, const std::string&
         PointOptions pointOptions;
         pointOptions.spacing = options.spacing;
         PointCloud cloud = levelSetToPoints(*model.grid, pointOptions, ctx);
-        cloud.attributes = gridsToAttributes(model.attributes, cloud.points, ctx);
+        cloud.attributes = gridsToAttributes(model.attributes, cloud.points, cloud.origin, ctx);
         writePointsPly(temporary, cloud);
         return;
     }
@@ -89,10 +100,11 @@ void writeOne(const LevelSet& model, const std::string& path, const std::string&
         meshing.sharp = options.sharp;
         meshing.source = model.source.get();
         mesh = levelSetToMesh(*model.grid, meshing, ctx);
-        mesh->attributes = gridsToAttributes(model.attributes, mesh->points, ctx);
+        mesh->attributes = gridsToAttributes(model.attributes, mesh->points, mesh->origin, ctx);
     }
     MeshFormat format{};
     writableMeshFormatOf(path, format);
+    if (format == MeshFormat::Stl) warnOfSteps(path, *mesh, ctx);
     writeMesh(temporary, format, *mesh);
 }
 

@@ -10,6 +10,7 @@
 #include "libvdbsynth/synth/texture_optimization.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/convert/zero_level.h"
+#include "libvdbsynth/vdb/coord.h"
 
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/GridTransformer.h>
@@ -92,9 +93,9 @@ MappedHole holeOf(const openvdb::FloatGrid& hole, const RunContext& ctx) {
 // The source mesh of a model, in its voxels.
 Mesh inVoxels(const Mesh& source, const openvdb::math::Transform& transform) {
     Mesh mesh = source;
+    mesh.origin = {0, 0, 0};
     for (Vec3f& p : mesh.points) {
-        const openvdb::Vec3d q =
-            transform.worldToIndex(openvdb::Vec3d(double(p.x), double(p.y), double(p.z)));
+        const openvdb::Vec3d q = transform.worldToIndex(toVec(cast<double>(p) + source.origin));
         p = {float(q.x()), float(q.y()), float(q.z())};
     }
     return mesh;

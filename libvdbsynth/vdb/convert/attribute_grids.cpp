@@ -42,11 +42,12 @@ Band emptyBand(const openvdb::FloatGrid& levelSet) {
     return band;
 }
 
-std::vector<Vec3f> inIndexSpaceOf(const openvdb::FloatGrid& levelSet, const std::vector<Vec3f>& points) {
+std::vector<Vec3f> inIndexSpaceOf(const openvdb::FloatGrid& levelSet, const std::vector<Vec3f>& points,
+                                  const Vec3d& origin) {
     std::vector<Vec3f> result;
     result.reserve(points.size());
     for (const Vec3f& p : points)
-        result.push_back(cast<float>(fromVec(levelSet.worldToIndex(toVec(cast<double>(p))))));
+        result.push_back(cast<float>(fromVec(levelSet.worldToIndex(toVec(cast<double>(p) + origin)))));
     return result;
 }
 
@@ -70,7 +71,7 @@ void fillFromNearest(Band& band, const std::vector<char>& missing, const std::ve
 Band blendFaces(const openvdb::FloatGrid& levelSet, const Mesh& mesh, const RunContext& ctx) {
     Band band = emptyBand(levelSet);
     Mesh index = mesh;
-    index.points = inIndexSpaceOf(levelSet, mesh.points);
+    index.points = inIndexSpaceOf(levelSet, mesh.points, mesh.origin);
     const std::vector<Triangle> triangles = triangulated(index);
     std::unordered_map<openvdb::Coord, std::size_t> leafAt;
     for (std::size_t i = 0; i < band.origins.size(); ++i) leafAt[band.origins[i]] = i;
@@ -102,9 +103,9 @@ Band blendFaces(const openvdb::FloatGrid& levelSet, const Mesh& mesh, const RunC
 }
 
 // The three nearest points, weighted by their inverse squared distances.
-Band blendPoints(const openvdb::FloatGrid& levelSet, const std::vector<Vec3f>& world, const RunContext& ctx) {
+Band blendPoints(const openvdb::FloatGrid& levelSet, const PointCloud& cloud, const RunContext& ctx) {
     Band band = emptyBand(levelSet);
-    const std::vector<Vec3f> points = inIndexSpaceOf(levelSet, world);
+    const std::vector<Vec3f> points = inIndexSpaceOf(levelSet, cloud.points, cloud.origin);
     const PointNeighbours tree(points);
     parallelFor(ctx, band.origins.size(), 8, [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin * BrickField::kSamples; n < end * BrickField::kSamples; ++n) {
@@ -182,13 +183,13 @@ openvdb::Vec3d asVec(const Value& value) {
 // Trilinear over the active voxels around a position; the background where none is active.
 template <typename GridType>
 Attribute sampleOne(const GridType& grid, std::size_t width, const std::vector<Vec3f>& places,
-                    const RunContext& ctx) {
+                    const Vec3d& origin, const RunContext& ctx) {
     Attribute attribute{grid.getName(), width, {}};
     attribute.values.resize(places.size() * width);
     parallelFor(ctx, places.size(), 4096, [&](std::size_t begin, std::size_t end) {
         const auto accessor = grid.getConstAccessor();
         for (std::size_t n = begin; n < end; ++n) {
-            const openvdb::Vec3d at = grid.worldToIndex(toVec(cast<double>(places[n])));
+            const openvdb::Vec3d at = grid.worldToIndex(toVec(cast<double>(places[n]) + origin));
             const openvdb::Coord base = openvdb::Coord::floor(at);
             openvdb::Vec3d sum(0.0);
             double weights = 0;
@@ -227,13 +228,13 @@ std::vector<GridPtr> attributesToGrids(const PointCloud& cloud, const openvdb::F
     if (cloud.attributes.empty()) return {};
     Stage stage(ctx, "attributes to grids", 1);
     const std::vector<GridPtr> grids =
-        makeGrids(levelSet, cloud.attributes, blendPoints(levelSet, cloud.points, ctx), ctx);
+        makeGrids(levelSet, cloud.attributes, blendPoints(levelSet, cloud, ctx), ctx);
     stage.advance();
     return grids;
 }
 
 Attributes gridsToAttributes(const std::vector<GridPtr>& grids, const std::vector<Vec3f>& places,
-                             const RunContext& ctx) {
+                             const Vec3d& origin, const RunContext& ctx) {
     requireGrids(grids);
     Attributes attributes;
     for (const GridPtr& grid : grids) {
@@ -243,7 +244,7 @@ Attributes gridsToAttributes(const std::vector<GridPtr>& grids, const std::vecto
                 using Value = typename std::decay_t<decltype(typed)>::ValueType;
                 const bool vector = openvdb::VecTraits<Value>::IsVec;
                 const std::size_t width = !vector ? 1 : typed.getName() == "uv" ? 2 : 3;
-                attributes.push_back(sampleOne(typed, width, places, ctx));
+                attributes.push_back(sampleOne(typed, width, places, origin, ctx));
             });
         if (!sampled)
             message(

@@ -18,11 +18,11 @@ std::vector<GridPtr> attributesToGrids(const Mesh& mesh, const openvdb::FloatGri
 /// The same for points: a voxel blends the three nearest, weighted by the inverse of their squared distances.
 std::vector<GridPtr> attributesToGrids(const PointCloud& cloud, const openvdb::FloatGrid& levelSet,
                                        const RunContext& ctx = {});
-/// Scalar grids and grids of 3-vectors sampled at positions [world], by the grids' names; a vector grid "uv"
-/// gives two values. Trilinear over active voxels, the background where none is active. Level sets and grids
-/// of other kinds are skipped.
+/// Scalar grids and grids of 3-vectors sampled at positions [world], relative to an origin, by the grids'
+/// names; a vector grid "uv" gives two values. Trilinear over active voxels, the background where none is
+/// active. Level sets and grids of other kinds are skipped.
 /// @par Repeats same bits for any number of threads
 Attributes gridsToAttributes(const std::vector<GridPtr>& grids, const std::vector<Vec3f>& places,
-                             const RunContext& ctx = {});
+                             const Vec3d& origin, const RunContext& ctx = {});
 
 }  // namespace vdbsynth

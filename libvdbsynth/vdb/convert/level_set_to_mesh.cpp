@@ -1,6 +1,7 @@
 #include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/geometry/local_points.h"
 #include "libvdbsynth/vdb/convert/zero_level.h"
 #include "libvdbsynth/vdb/coord.h"
 
@@ -9,6 +10,8 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace vdbsynth {
 namespace {
@@ -16,7 +19,12 @@ namespace {
 constexpr float kGap = 0.02f;  // [voxels] between sheets that touched
 
 void toWorld(const openvdb::FloatGrid& grid, Mesh& mesh) {
-    for (Vec3f& p : mesh.points) p = cast<float>(fromVec(grid.indexToWorld(toVec(cast<double>(p)))));
+    std::vector<Vec3d> world;
+    world.reserve(mesh.points.size());
+    for (const Vec3f& p : mesh.points) world.push_back(fromVec(grid.indexToWorld(toVec(cast<double>(p)))));
+    LocalPoints local = localPoints(world);
+    mesh.points = std::move(local.points);
+    mesh.origin = local.origin;
     // A transform with a reflection reverses the faces.
     if (grid.transform().baseMap()->getAffineMap()->getMat4().det() > 0) return;
     for (Triangle& t : mesh.triangles) std::swap(t[0], t[2]);
@@ -24,7 +32,9 @@ void toWorld(const openvdb::FloatGrid& grid, Mesh& mesh) {
 }
 
 Mesh inIndexSpace(const openvdb::FloatGrid& grid, Mesh mesh) {
-    for (Vec3f& p : mesh.points) p = cast<float>(fromVec(grid.worldToIndex(toVec(cast<double>(p)))));
+    for (Vec3f& p : mesh.points)
+        p = cast<float>(fromVec(grid.worldToIndex(toVec(cast<double>(p) + mesh.origin))));
+    mesh.origin = {0, 0, 0};
     return mesh;
 }
 

@@ -4,6 +4,7 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/random.h"
+#include "libvdbsynth/geometry/local_points.h"
 #include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/vdb/convert/trilinear.h"
 #include "libvdbsynth/vdb/convert/zero_level.h"
@@ -15,6 +16,7 @@
 #include <cmath>
 #include <string>
 #include <unordered_map>
+#include <utility>
 
 namespace vdbsynth {
 namespace {
@@ -105,15 +107,19 @@ PointCloud levelSetToPoints(const openvdb::FloatGrid& grid, const PointOptions& 
     stage.advance();
     Occupied occupied(options.spacing);
     PointCloud cloud;
+    std::vector<Vec3d> world;
     TrilinearSampler sampler(grid);
     for (const Candidate& candidate : candidates) {
         if (!occupied.tryAdd(candidate.point)) continue;
         Vec3d gradient;
         sampler.sample(cast<double>(candidate.point), gradient);
-        cloud.points.push_back(cast<float>(fromVec(grid.indexToWorld(toVec(cast<double>(candidate.point))))));
+        world.push_back(fromVec(grid.indexToWorld(toVec(cast<double>(candidate.point)))));
         const openvdb::Vec3d normal = grid.transform().baseMap()->applyIJT(toVec(gradient));
         cloud.normals.push_back(cast<float>(normalized(fromVec(normal))));
     }
+    LocalPoints local = localPoints(world);
+    cloud.points = std::move(local.points);
+    cloud.origin = local.origin;
     stage.advance();
     return cloud;
 }

@@ -1,19 +1,23 @@
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
 #include "libvdbsynth/distance/rebuild_band.h"
 #include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/convert/far_grid.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set_steps.h"
+#include "libvdbsynth/vdb/convert/surface_kept.h"
 #include "libvdbsynth/vdb/wall.h"
 
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/geometry/mesh_check.h"
 #include "libvdbsynth/math/lattice.h"
+#include "libvdbsynth/solid/mesh_parts.h"
 #include "libvdbsynth/vdb/coord.h"
 
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tree/LeafManager.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 
@@ -55,12 +59,15 @@ bool lostCavities(const Volumes& v, double voxelSize) {
     return v.enclosed - std::abs(v.signedVolume) > 0.25 * v.area * voxelSize;
 }
 
+// Voxel centres that happen to lie on a sheet count as inside: about a voxel of depth over its area.
+bool sheetOnly(const Volumes& v, double voxelSize) {
+    return v.enclosed < 1.5 * v.area * voxelSize && v.enclosed > 2 * std::abs(v.signedVolume);
+}
+
 // Empty if a level set encloses its mesh's volume, else the problem.
 std::string missingVolume(const Volumes& volumes, const Mesh& mesh, double voxelSize) {
     const double enclosed = volumes.enclosed, volume = volumes.signedVolume, area = volumes.area;
-    // Voxel centres that happen to lie on a sheet count as inside: about a voxel of depth over its area.
-    const bool sheetOnly = enclosed < 1.5 * area * voxelSize && enclosed > 2 * std::abs(volume);
-    if (!sheetOnly && enclosed >= 0.5 * std::abs(volume) && enclosed > 0) return "";
+    if (!sheetOnly(volumes, voxelSize) && enclosed >= 0.5 * std::abs(volume) && enclosed > 0) return "";
     const MeshSummary summary = summarize(mesh);
     if (summary.openEdges == 0 && enclosed > 0 && enclosed >= 0.5 * std::abs(volume)) return "";
     if (summary.openEdges == 0 && std::abs(volume) > 0 && std::abs(volume) < area * voxelSize)
@@ -99,31 +106,64 @@ bool boundsSolid(const Mesh& mesh) {
     return removeDuplicateFaces(copy) == 0;
 }
 
-// The mesh prepared for the sign rule of a solid, and the problems found.
+// Faces that bound a solid by the winding number, and what was done for it.
 struct Prepared {
     Mesh mesh;
-    bool balanced = false;
+    bool balanced = false, cavities = false;
     std::string found;
 };
 
-Prepared prepare(const Mesh& mesh) {
+bool hasCavities(const MeshParts& parts) {
+    return std::any_of(parts.parts.begin(), parts.parts.end(),
+                       [](const MeshPart& part) { return part.role == PartRole::Cavity; });
+}
+
+void noteTurned(const OrientedParts& oriented, const std::string& name, const RunContext& ctx) {
+    const auto parts = [](std::size_t count) {
+        return std::to_string(count) + (count == 1 ? " part" : " parts");
+    };
+    if (oriented.flipped > 0)
+        message(ctx, MessageLevel::Note,
+                name + ": " + parts(oriented.flipped) +
+                    " with normals turned; outermost parts are solid, opposed ones in them are voids");
+    if (oriented.removed > 0)
+        message(ctx, MessageLevel::Note,
+                name + ": " + parts(oriented.removed) + " inside a solid part united with it");
+}
+
+// Welds, removes duplicates and orients.
+Prepared prepare(const Mesh& mesh, const std::string& name, const RunContext& ctx) {
     Prepared prepared;
     prepared.mesh = mesh;
-    const std::size_t welded = weldVertices(prepared.mesh);
+    weldVertices(prepared.mesh);
     const std::size_t duplicates = removeDuplicateFaces(prepared.mesh);
-    prepared.balanced = welded > 0 && duplicates == 0 && isBalanced(prepared.mesh);
-    if (prepared.balanced || prepared.mesh.faceCount() == 0) return prepared;
-    const std::size_t flipped = orientFaces(prepared.mesh);
-    prepared.balanced = isBalanced(prepared.mesh);
-    const MeshSummary summary = summarize(prepared.mesh);
-    const auto add = [&](std::size_t count, const char* what) {
-        if (count > 0) prepared.found += (prepared.found.empty() ? "" : ", ") + std::to_string(count) + what;
-    };
-    add(summary.openEdges, " open edges");
-    add(summary.nonManifoldEdges, " edges of more than two faces");
-    add(duplicates, " duplicate faces");
-    add(flipped, " flipped faces");
+    if (prepared.mesh.faceCount() == 0) throw Error(ErrorCode::Unusable, name + ": no face has an area");
+    prepared.balanced = duplicates == 0 && isBalanced(prepared.mesh);
+    const std::size_t flipped = prepared.balanced ? 0 : orientFaces(prepared.mesh);
+    const MeshParts parts = meshParts(prepared.mesh, ctx);
+    prepared.cavities = hasCavities(parts);
+    OrientedParts oriented = orientParts(prepared.mesh, parts);
+    if (oriented.mesh) prepared.mesh = std::move(*oriented.mesh);
+    if (!prepared.balanced) {
+        prepared.balanced = isBalanced(prepared.mesh);
+        const MeshSummary summary = summarize(prepared.mesh);
+        const auto add = [&](std::size_t count, const char* what) {
+            if (count > 0)
+                prepared.found += (prepared.found.empty() ? "" : ", ") + std::to_string(count) + what;
+        };
+        add(summary.openEdges, " open edges");
+        add(summary.nonManifoldEdges, " edges of more than two faces");
+        add(duplicates, " duplicate faces");
+        add(flipped, " flipped faces");
+    }
+    noteTurned(oriented, name, ctx);
     return prepared;
+}
+
+Mesh inVoxels(const Mesh& mesh, double voxelSize) {
+    Mesh index = mesh;
+    for (Vec3f& p : index.points) p = cast<float>(cast<double>(p) * (1 / voxelSize));
+    return index;
 }
 
 void checkOptions(double voxelSize, double halfWidth) {
@@ -210,47 +250,116 @@ void validate(const SolidOptions& options) {
                   "thickness", roundedText(options.thickness, 6), "above 0 (world)");
 }
 
+namespace {
+
+struct Conversion {
+    double voxelSize, halfWidth;
+    const SolidOptions& options;
+    const std::string& name;
+    const RunContext& ctx;
+};
+
+// OpenVDB's level set of a mesh that bounds a solid without voids, or null where it is not a good one.
+FloatGridPtr tryOpenVdb(const Mesh& mesh, const Conversion& to) {
+    const FloatGridPtr grid =
+        openVdbLevelSet(mesh, to.voxelSize, to.halfWidth, to.options.exact, to.name, to.ctx);
+    const Volumes volumes = volumesOf(*grid, mesh, to.voxelSize);
+    return sheetOnly(volumes, to.voxelSize) || lostCavities(volumes, to.voxelSize) || hasGaps(*grid, to.ctx)
+               ? nullptr
+               : grid;
+}
+
+// The same of a mesh with voids in it.
+FloatGridPtr tryNested(const Mesh& mesh, const MeshParts& parts, const Conversion& to) {
+    FloatGridPtr whole;
+    bool isVoid = false;
+    for (const Mesh& level : nestedMeshes(mesh, parts)) {
+        const FloatGridPtr grid = tryOpenVdb(level, to);
+        if (!grid) return nullptr;
+        if (whole)
+            addNested(*whole, *grid, isVoid, to.name);
+        else
+            whole = grid;
+        isVoid = !isVoid;
+    }
+    return whole;
+}
+
+// The mesh as it is, its parts oriented, if OpenVDB converts it well; else null.
+FloatGridPtr solidAsIs(const Mesh& mesh, const Conversion& to) {
+    if (!boundsSolid(mesh)) return nullptr;
+    const MeshParts parts = meshParts(mesh, to.ctx);
+    const OrientedParts oriented = orientParts(mesh, parts);
+    const Mesh& use = oriented.mesh ? *oriented.mesh : mesh;
+    const FloatGridPtr grid = hasCavities(parts) ? tryNested(mesh, parts, to) : tryOpenVdb(use, to);
+    if (!grid) return nullptr;
+    noteTurned(oriented, to.name, to.ctx);
+    requireKept(inVoxels(use, to.voxelSize), *grid, to.name, to.ctx);
+    return grid;
+}
+
+FloatGridPtr solidByWinding(const Mesh& indexMesh, const Conversion& to) {
+    Stage stage(to.ctx, "mesh to level set", 1);
+    const BrickField field = soupToField(indexMesh, to.name, to.ctx);
+    stage.advance();
+    float value = 0;
+    if (field.constantIn(field.box(), value)) {
+        // Nothing is inside, which the comparison with the mesh will say.
+        const FloatGridPtr none = openvdb::FloatGrid::create(float(to.halfWidth * to.voxelSize));
+        none->setTransform(openvdb::math::Transform::createLinearTransform(to.voxelSize));
+        return none;
+    }
+    return levelSetOf(field, to.voxelSize, float(to.halfWidth), to.name, to.ctx);
+}
+
+FloatGridPtr solidOf(const Mesh& mesh, const Conversion& to) {
+    if (const FloatGridPtr grid = solidAsIs(mesh, to)) return grid;
+    Prepared prepared = prepare(mesh, to.name, to.ctx);
+    FloatGridPtr grid;
+    if (prepared.balanced && !prepared.cavities) grid = tryOpenVdb(prepared.mesh, to);
+    if (!prepared.found.empty())
+        message(to.ctx, MessageLevel::Warning,
+                to.name + ": " + prepared.found +
+                    (grid ? "; reoriented" : "; inside is where the winding number is over a half"));
+    const Mesh indexMesh = inVoxels(prepared.mesh, to.voxelSize);
+    if (!grid) {
+        requireBandMemory(mesh, to.voxelSize, to.halfWidth, to.name, to.ctx);
+        grid = solidByWinding(indexMesh, to);
+    }
+    requireKept(indexMesh, *grid, to.name, to.ctx);
+    return grid;
+}
+
+FloatGridPtr shellOf(const Mesh& mesh, const Conversion& to) {
+    const double thickness = to.options.thickness / to.voxelSize;
+    requireBandMemory(mesh, to.voxelSize, to.halfWidth + thickness, to.name, to.ctx);
+    Stage stage(to.ctx, "mesh to level set", 1);
+    const BrickField field = sheetToField(inVoxels(mesh, to.voxelSize), thickness, to.ctx);
+    stage.advance();
+    return levelSetOf(field, to.voxelSize, float(to.halfWidth), to.name, to.ctx);
+}
+
+}  // namespace
+
 FloatGridPtr meshToSolid(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
                          const SolidOptions& options, const RunContext& ctx) {
     checkOptions(voxelSize, halfWidth);
+    requireVoxelSize(voxelSize, name);
     requireMesh(mesh, name);
     validate(options);
     const bool shell = options.open == OpenMesh::Shell;
     requireOption(!shell || options.thickness >= voxelSize, "thickness", std::to_string(options.thickness),
                   "at least a voxel, which is " + std::to_string(voxelSize));
-    if (!shell && boundsSolid(mesh)) {
-        const FloatGridPtr grid = openVdbLevelSet(mesh, voxelSize, halfWidth, options.exact, name, ctx);
-        const Volumes volumes = volumesOf(*grid, mesh, voxelSize);
-        if (missingVolume(volumes, mesh, voxelSize).empty() && !lostCavities(volumes, voxelSize) &&
-            !hasGaps(*grid, ctx))
-            return grid;
+    const Conversion to{voxelSize, halfWidth, options, name, ctx};
+    const WholeVoxels place = wholeVoxels(mesh.origin, voxelSize);
+    Mesh near;
+    if (!place.none()) {
+        near = mesh;
+        near.origin = {0, 0, 0};
+        for (Vec3f& p : near.points) p = cast<float>(cast<double>(p) + place.rest);
     }
-    Prepared prepared;
-    if (shell)
-        prepared.mesh = mesh;
-    else
-        prepared = prepare(mesh);
-    if (prepared.mesh.faceCount() == 0) throw Error(ErrorCode::Unusable, name + ": no face has an area");
-    if (!prepared.found.empty())
-        message(
-            ctx, MessageLevel::Warning,
-            name + ": " + prepared.found +
-                (prepared.balanced ? "; reoriented" : "; inside is where the winding number is over a half"));
-    if (prepared.balanced) {
-        const FloatGridPtr grid =
-            openVdbLevelSet(prepared.mesh, voxelSize, halfWidth, options.exact, name, ctx);
-        const Volumes volumes = volumesOf(*grid, prepared.mesh, voxelSize);
-        const std::string wrong = missingVolume(volumes, prepared.mesh, voxelSize);
-        if (!wrong.empty()) throw Error(ErrorCode::Unusable, name + ": " + wrong);
-        if (!lostCavities(volumes, voxelSize) && !hasGaps(*grid, ctx)) return grid;
-    }
-    requireBandMemory(mesh, voxelSize, halfWidth + options.thickness / voxelSize, name, ctx);
-    Stage stage(ctx, "mesh to level set", 1);
-    for (Vec3f& p : prepared.mesh.points) p = cast<float>(cast<double>(p) * (1 / voxelSize));
-    const BrickField field = shell ? sheetToField(prepared.mesh, options.thickness / voxelSize, ctx)
-                                   : soupToField(prepared.mesh, name, ctx);
-    stage.advance();
-    return levelSetOf(field, voxelSize, float(halfWidth), name, ctx);
+    const Mesh& local = place.none() ? mesh : near;
+    return movedBy(shell ? shellOf(local, to) : solidOf(local, to), place, name, ctx);
 }
 
 FloatGridPtr levelSetOf(const BrickField& field, double voxelSize, float halfWidth, const std::string& name,

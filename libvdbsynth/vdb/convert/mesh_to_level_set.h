@@ -48,6 +48,10 @@ void validate(const SolidOptions& options);
 FloatGridPtr meshToSolid(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
                          const SolidOptions& options = {}, const RunContext& ctx = {});
 
+/// Share of the input's outer surface that a level set of meshToSolid lost, from 0 to 1: of what was said
+/// when it was made. 0 for any other grid.
+double lostShare(const openvdb::FloatGrid& grid);
+
 /// A level set of points. Outliers are left out with a warning, and missing normals are estimated. Within a
 /// few spacings of a point the surface is the moving least squares surface of the tangent planes
 /// [kolluri2008]; in gaps it is where the winding number of the points is one half [barill2018].

@@ -1,11 +1,14 @@
 // Solids from oriented points.
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/distance/point_field.h"
+#include "libvdbsynth/vdb/convert/far_grid.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set_steps.h"
+#include "libvdbsynth/vdb/convert/surface_kept.h"
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace vdbsynth {
 FloatGridPtr pointsToSolid(const PointCloud& cloud, double voxelSize, double halfWidth,
@@ -15,10 +18,12 @@ FloatGridPtr pointsToSolid(const PointCloud& cloud, double voxelSize, double hal
     requireOption(halfWidth >= 1.5 && halfWidth <= 1000, "halfWidth", std::to_string(halfWidth),
                   "from 1.5 to 1000 voxels");
     validate(options);
+    requireVoxelSize(voxelSize, name);
     const bool shell = options.open == OpenMesh::Shell;
     requireOption(!shell || (std::isfinite(options.thickness) && options.thickness >= voxelSize), "thickness",
                   std::to_string(options.thickness),
                   "at least a voxel, which is " + std::to_string(voxelSize));
+    const WholeVoxels place = wholeVoxels(cloud.origin, voxelSize);
     PointCloud index = cloud;
     const std::size_t outliers = dropOutliers(index, ctx);
     if (outliers > 0)
@@ -32,9 +37,10 @@ FloatGridPtr pointsToSolid(const PointCloud& cloud, double voxelSize, double hal
         message(ctx, MessageLevel::Note, name + ": no normals; estimated and oriented consistently");
         estimateNormals(index, ctx);
     }
-    for (Vec3f& p : index.points) p = cast<float>(cast<double>(p) * (1 / voxelSize));
+    for (Vec3f& p : index.points) p = cast<float>((cast<double>(p) + place.rest) * (1 / voxelSize));
     double area = 0;
-    for (float spacing : pointSpacing(index, ctx)) area += double(spacing) * double(spacing);
+    const std::vector<float> spacings = pointSpacing(index, ctx);
+    for (float spacing : spacings) area += double(spacing) * double(spacing);
     requireMemory(ctx, area * 2 * halfWidth * 60,
                   name + ": a level set at voxel size " + std::to_string(voxelSize),
                   "use a larger `voxelSize` or a smaller `resolution`");
@@ -49,7 +55,9 @@ FloatGridPtr pointsToSolid(const PointCloud& cloud, double voxelSize, double hal
                     " % of the points enclose nothing, as in a scan from one side; make a shell with `open` "
                     "shell and a `thickness`");
     stage.advance();
-    return levelSetOf(solid.field, voxelSize, float(halfWidth), name, ctx);
+    const FloatGridPtr grid = levelSetOf(solid.field, voxelSize, float(halfWidth), name, ctx);
+    if (!shell) requirePointsKept(index.points, spacings, solid.field, name, ctx);
+    return movedBy(grid, place, name, ctx);
 }
 
 }  // namespace vdbsynth

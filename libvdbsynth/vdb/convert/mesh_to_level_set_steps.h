@@ -2,9 +2,11 @@
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/geometry/mesh.h"
 #include "libvdbsynth/grid/brick_field.h"
+#include "libvdbsynth/solid/mesh_parts.h"
 #include "libvdbsynth/vdb/vdb_fwd.h"
 
 #include <string>
+#include <vector>
 
 namespace vdbsynth {
 
@@ -16,6 +18,12 @@ namespace vdbsynth {
 BrickField soupToField(const Mesh& indexMesh, const std::string& name, const RunContext& ctx = {});
 /// The same for a sheet of a thickness [voxels].
 BrickField sheetToField(const Mesh& indexMesh, double thickness, const RunContext& ctx = {});
+
+/// The closed parts by how deep they are nested: outermost solids, their voids, solids in those and so on,
+/// each mesh with its faces outward. Empty if a part is open.
+std::vector<Mesh> nestedMeshes(const Mesh& mesh, const MeshParts& parts);
+/// Takes a void out of a level set, or adds a solid in one. @param next  emptied
+void addNested(openvdb::FloatGrid& whole, openvdb::FloatGrid& next, bool isVoid, const std::string& name);
 
 /// A field in index space, of which only the zero level is meant, as a level set.
 FloatGridPtr levelSetOf(const BrickField& field, double voxelSize, float halfWidth, const std::string& name,

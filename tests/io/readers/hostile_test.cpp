@@ -22,7 +22,7 @@ void readAny(const std::string& path) {
     RunContext ctx;
     ctx.maxMemory = 500000000;
     if (isRasterPath(path))
-        readRaster(path, ctx);
+        readRaster(path, {}, ctx);
     else if (isPointPath(path) || holdsPoints(path))
         readPoints(path, ctx);
     else
@@ -75,7 +75,7 @@ std::vector<float> numbersOf(const std::string& path) {
         const Raster raster = readRaster(path);
         numbers = raster.values;
         numbers.push_back(float(raster.spacing.x));
-    } else if (isPointPath(path)) {
+    } else if (isPointPath(path) || holdsPoints(path)) {
         add(readPoints(path).cloud.points);
     } else {
         const Mesh mesh = readMesh(path);

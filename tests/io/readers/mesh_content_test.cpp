@@ -42,3 +42,21 @@ TEST_CASE("meshOf: a face with a bad corner is an error that names it", "[io][er
     CHECK(test::contains(refused(bad).message, "vertex 4 of 4"));
     CHECK(refused({}).code == int(ErrorCode::EmptyInput));
 }
+
+TEST_CASE("meshOf: faces that cross themselves and faces of two corners are said", "[io][hand]") {
+    MeshContent content;
+    content.points = {{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}};
+    const std::uint32_t corners[] = {0, 1, 2, 3};
+    content.polygons.add(corners, 4);
+    content.polygons.add(corners, 2);
+    content.polygons.add(corners, 3);
+    std::vector<std::string> said;
+    RunContext ctx;
+    ctx.onMessage = [&](MessageLevel level, const std::string& text) {
+        said.push_back((level == MessageLevel::Warning ? "warning " : "note ") + text);
+    };
+    CHECK(meshOf("m.off", content, ctx).faceCount() == 2);
+    REQUIRE(said.size() == 2);
+    CHECK(said[0] == "note m.off: 1 faces with fewer than three corners left out");
+    CHECK(test::contains(said[1], "warning m.off: 1 of 3 faces cross themselves"));
+}

@@ -5,6 +5,7 @@
 
 #include "libvdbsynth/io/mesh_file.h"
 #include "tests/support/makers.h"
+#include "tests/support/raster_files.h"
 #include "tests/support/temporary_folder.h"
 
 using namespace vdbsynth;
@@ -34,6 +35,40 @@ TEST_CASE("requireModelPath: an unknown extension is refused", "[pipeline][error
     const test::Thrown thrown = test::thrownBy([] { requireModelPath("a.doc"); });
     CHECK(thrown.code == int(ErrorCode::InvalidOption));
     CHECK(test::contains(thrown.message, "a.doc: unknown extension"));
+    for (const char* name : {"a.hdr", "a.IMG", "a.img.gz"})
+        CHECK(test::contains(test::thrownBy([&] { requireModelPath(name); }).message, "one .nii"));
+}
+
+TEST_CASE("loadModel: a turned volume is a level set whose transform is turned, at any voxel size",
+          "[pipeline][oracle]") {
+    const test::TemporaryFolder folder;
+    std::string voxels(24 * 24 * 24, '\0');
+    for (std::size_t i = 0; i < voxels.size(); ++i) {
+        const double x = double(i % 24) - 12, y = double(i / 24 % 24) - 12, z = double(i / 576) - 12;
+        voxels[i] = x * x + y * y + z * z < 64 ? 1 : 0;
+    }
+    // 36.9 degrees about z, slices backwards, voxels of 2.
+    const std::string path = folder.write(
+        "a.nii", test::nifti(24, 24, 24, voxels, {1.6f, -1.2f, 0, 10, 1.2f, 1.6f, 0, 20, 0, 0, -2, 30}));
+    const Vec3d centre{10 + 1.6 * 12 - 1.2 * 12, 20 + 1.2 * 12 + 1.6 * 12, 30 - 24};
+    for (const double voxelSize : {0.0, 1.3}) {
+        ModelOptions options;
+        options.voxelSize = voxelSize;
+        const LevelSet model = loadModel(path, options);
+        REQUIRE_NOTHROW(requireModel(&model, "the model"));
+        const openvdb::Vec3d step = model.grid->indexToWorld(openvdb::Vec3d(1, 0, 0)) -
+                                    model.grid->indexToWorld(openvdb::Vec3d(0, 0, 0));
+        CHECK(step.y() / step.x() == Approx(0.75));
+        CHECK(step.length() == Approx(voxelSize > 0 ? voxelSize : 2));
+        openvdb::Vec3d sum(0, 0, 0);
+        double count = 0;
+        for (auto it = model.grid->cbeginValueOn(); it; ++it) {
+            if (*it >= 0) continue;
+            sum += model.grid->indexToWorld(it.getCoord());
+            count += 1;
+        }
+        for (int axis = 0; axis < 3; ++axis) CHECK(sum[axis] / count == Approx(centre[axis]).margin(0.05));
+    }
 }
 
 TEST_CASE("withHalfWidth: another band, the same surface, its own band is left alone",

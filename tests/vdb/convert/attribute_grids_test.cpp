@@ -37,7 +37,7 @@ TEST_CASE("attributesToGrids, gridsToAttributes: a linear attribute survives mes
     CHECK(grids[1]->isType<openvdb::FloatGrid>());
     for (const GridPtr& grid : grids) CHECK(grid->activeVoxelCount() == levelSet->activeVoxelCount());
     const Mesh made = levelSetToMesh(*levelSet);
-    const Attributes back = gridsToAttributes(grids, made.points);
+    const Attributes back = gridsToAttributes(grids, made.points, {});
     REQUIRE(back.size() == 3);
     CHECK(back[2].width == 2);
     for (std::size_t i = 0; i < made.points.size(); ++i) {
@@ -83,7 +83,7 @@ TEST_CASE("gridsToAttributes: kinds of grid, inactive places, level sets are pas
     const auto text = openvdb::MaskGrid::create(false);
     text->setName("mask");
     const Attributes made =
-        gridsToAttributes({count, other, text}, {{0.2f, 0, 0}, {0.9f, 0.9f, 0.9f}, {20, 0, 0}});
+        gridsToAttributes({count, other, text}, {{0.2f, 0, 0}, {0.9f, 0.9f, 0.9f}, {20, 0, 0}}, {});
     REQUIRE(made.size() == 1);
     CHECK(made[0].values == std::vector<float>{7, 7, -1});
 }

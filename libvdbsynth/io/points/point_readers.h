@@ -21,9 +21,19 @@ struct PointContent {
 // @throw Error BadData
 PointContent readPlyPoints(const std::string& path, const std::string& content, const RunContext& ctx = {});
 PointContent readPcd(const std::string& path, const std::string& content, const RunContext& ctx = {});
+PointContent readGltfPoints(const std::string& path, const std::string& content, const RunContext& ctx = {});
 PointContent readRows(const std::string& path, const std::string& content, const RunContext& ctx = {});
+PointContent readNpyPoints(const std::string& path, const std::string& content, const RunContext& ctx = {});
+
+/// True if an array's header claims points: 3 to 9 columns (or rows) of real numbers, or 3 of whole ones of
+/// two bytes or more, and at least ten times as many of the other. @throw Error BadData
+bool npyHoldsPoints(const std::string& path, const std::string& content);
 
 /// Number of elements of faces or strips that are not empty, as a PLY header claims. @throw Error BadData
 std::int64_t plyFaceCount(const std::string& path, const std::string& content);
+
+/// True if the scene of a glTF file has points and no triangles. Of a .glb the JSON chunk is enough.
+/// @throw Error BadData
+bool gltfHoldsPoints(const std::string& path, const std::string& content);
 
 }  // namespace vdbsynth

@@ -3,7 +3,6 @@
 #include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
-#include <chrono>
 #include <cstring>
 #include <sstream>
 
@@ -78,20 +77,23 @@ TEST_CASE("plainText: no raw bytes, no end", "[vdb][fast]") {
     CHECK(plainText("").empty());
 }
 
-TEST_CASE("readVdb: cut off or damaged anywhere, it answers at once and in one plain line",
-          "[vdb][hostile]") {
+// OpenVDB writes beyond its memory for some damaged voxels; the command line reads in a process of its own
+// (tests/cli/reported_vdb_test.py Damage). Here only what is checked before OpenVDB sees the file.
+TEST_CASE("vdbLayout: a file cut off or damaged anywhere gives a list or one plain line", "[vdb][hostile]") {
+    openvdb::initialize();
     const test::TemporaryFolder folder;
     const std::string good = goodFile(folder);
-    const auto began = std::chrono::steady_clock::now();
+    std::size_t refused = 0;
     const auto answers = [&](const std::string& bytes) {
-        const std::string path = folder.write("x.vdb", bytes);
-        const test::Thrown thrown = test::thrownBy([&] { readVdb(path); });
+        const test::Thrown thrown = test::thrownBy([&] { layoutOf(bytes); });
         if (thrown.code < 0) return;
+        ++refused;
         INFO(thrown.message);
         CHECK(thrown.code == int(ErrorCode::BadData));
         for (const char c : thrown.message) CHECK((c >= ' ' && c <= '~'));
     };
     for (std::size_t n = 1; n < good.size(); n += 1 + good.size() / 200) answers(good.substr(0, n));
+    CHECK(refused > 150);
     for (std::uint64_t i = 0; i < 300; ++i) {
         Random random(5, i);
         std::string bytes = good;
@@ -101,5 +103,4 @@ TEST_CASE("readVdb: cut off or damaged anywhere, it answers at once and in one p
             bytes[k] = char(i % 5 ? int(random.uniform(0, 256)) : 255);
         answers(bytes);
     }
-    CHECK(std::chrono::steady_clock::now() - began < std::chrono::seconds(60));
 }

@@ -119,8 +119,10 @@ private:
         InactiveRegions::Votes out = regions->outside();
         const double share = double(out.negative) / std::max(1.0, double(out.negative + out.positive));
         const std::size_t agreeing = contacts.inside.voxels + contacts.outside.voxels;
-        mTurned = field().background() > 0 ? share >= 0.97 && 2 * contacts.jumps >= agreeing
-                                           : share >= 0.97 || (believed && share > 0.5);
+        // Without a positive value there is nothing that a turn would make solid.
+        mTurned = rangeOf(field()).maximum > 0 &&
+                  (field().background() > 0 ? share >= 0.97 && 2 * contacts.jumps >= agreeing
+                                            : share >= 0.97 || (believed && share > 0.5));
         if (mTurned) {
             turn();
             std::swap(out.negative, out.positive);

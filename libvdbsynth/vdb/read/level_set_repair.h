@@ -12,7 +12,7 @@ struct RepairedField {
     FloatGridPtr field;             ///< the given one where nothing was wrong
     bool measureAnew = false;       ///< only its zero level is to be believed, not its distances
     float halfWidth = 3;            ///< [voxels] of the band that is to be measured anew
-    std::vector<std::string> said;  ///< what was wrong and what became of it, one part of a sentence each
+    std::vector<std::string> said{};  ///< what was wrong and what became of it, one part of a sentence each
 };
 
 /// Finds and repairs what other programs leave in the level sets they write: turned signs, an inside that is

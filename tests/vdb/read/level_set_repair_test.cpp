@@ -179,22 +179,22 @@ TEST_CASE("repairedField: a solid cut open is closed flat where it was cut", "[v
         return copy;
     };
     // Half a voxel beyond the last layer.
-    const double half = kBall / 2 + 3.14159 * (100 * 0.5 - 0.125 / 3);
-    becomes(clipped({{-30, -30, -30}, {30, 30, 0}}), half, "cut open at high z");
-    becomes(clipped({{0, -30, -30}, {30, 30, 30}}), half, "cut open at low x");
+    const double halved = kBall / 2 + 3.14159 * (100 * 0.5 - 0.125 / 3);
+    becomes(clipped({{-30, -30, -30}, {30, 30, 0}}), halved, "cut open at high z");
+    becomes(clipped({{0, -30, -30}, {30, 30, 30}}), halved, "cut open at low x");
     const Read octant = read(clipped({{0, 0, 0}, {30, 30, 30}}));
     CHECK(test::contains(octant.said, "low x, low y, low z"));
-    CHECK(octant.volume() == Approx(kBall / 8 * 1.15).epsilon(0.05));
+    CHECK(octant.volume() == Approx(kBall / 8 * 1.22).epsilon(0.03));
     // Only its active voxels were copied, so that its inside is lost too.
     Band lost;
     lost.interior = 3;
     const auto open = bandGrid(ballField(10), 15, kVoxel, lost);
     open->clip({{-30, -30, -30}, {30, 30, 0}});
-    becomes(open, half, "cut open at high z");
+    becomes(open, halved, "cut open at high z");
     // One face within the solid, away from its band.
     becomes(clipped({{-3, -3, 0}, {3, 3, 30}}), 7 * 7 * 9.9, "low z", 0.05);
     // A dense box that ends amid the solid.
-    becomes(denseGrid(boxField({30, 5, 5}), 8, kVoxel, 0), 17 * 11 * 11, "low x, high x", 0.05);
+    becomes(denseGrid(boxField({30, 5, 5}), 8, kVoxel, 0), 17 * 9 * 9, "low x, high x", 0.05);
 }
 
 TEST_CASE("repairedField: cubic solids of pores keep their sense where the box cuts them",
@@ -204,8 +204,9 @@ TEST_CASE("repairedField: cubic solids of pores keep their sense where the box c
         for (int i = 0; i < 3; ++i) q[i] = p[i] - 10 * std::round(p[i] / 10);
         return 4 - q.length();
     };
-    const Read result = read(denseGrid(pores, 15, kVoxel, 0));
-    CHECK(result.volume() > 0.65 * 31 * 31 * 31);
+    const Read result = read(denseGrid(pores, 18, kVoxel, 0));
+    INFO(result.said);
+    CHECK(result.volume() > 0.65 * 37 * 37 * 37);
     CHECK(test::contains(result.said, "cut open at low x, high x, low y, high y, low z, high z"));
 }
 

@@ -84,7 +84,7 @@ class BadFiles(CliTest):
             (3, "missing.obj: no such file", ["info", "missing.obj"]),
             (3, "folder.vdb: is a directory", ["info", "folder.vdb"]),
             (3, "empty.vdb: the file is empty", ["info", "empty.vdb"]),
-            (3, "cut.vdb: truncated or corrupt", ["info", "cut.vdb"]),
+            (3, "cut.vdb: truncated", ["info", "cut.vdb"]),
             (3, "text.vdb: not a VDB file", ["info", "text.vdb"]),
             (3, "empty.obj: the file is empty", ["convert", "empty.obj", "-o", "x.vdb"]),
             (3, "nan.obj:1: a coordinate is not a finite number", ["convert", "nan.obj", "-o", "x.vdb"]),
@@ -117,7 +117,7 @@ class BadFiles(CliTest):
         self.fails(1, "over --max-memory", "synth", "g.vdb", "-o", "x.vdb", "--size", "20000,20000,20000")
         self.fails(1, "over --max-memory", "make", "grid", "x.vdb", "--resolution", 4096, "--max-memory", "1G")
         self.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n")
-        self.fails(1, "over --max-memory", "convert", "t.obj", "-o", "x.vdb", "--voxel-size", "1e-6")
+        self.fails(1, "over --max-memory", "convert", "t.obj", "-o", "x.vdb", "--voxel-size", "2e-5")
         self.fails(1, "no surface in it", "crop", "g.vdb", "-o", "x.vdb", "--box", "500,500,500,520,520,520")
 
     def test_open_samples_are_refused_with_their_open_edges(self):

@@ -17,7 +17,8 @@ namespace vdbsynth {
 namespace {
 
 constexpr const char* kLostKey = "vdbsynth:lost_share";
-constexpr double kSaid = 0.001;  // of the surface: less is what rounding at tips and edges loses
+constexpr double kWarned = 0.02;  // of the surface; less is what sharp edges and tips lose
+constexpr double kSaid = 0.001;
 
 std::string boundsText(const Vec3d& low, const Vec3d& high) {
     const auto text = [](const Vec3d& p) {
@@ -62,7 +63,8 @@ void requireKept(const Mesh& mesh, openvdb::FloatGrid& grid, const std::string& 
     const std::string text = name + ": " + lossText(loss, voxel, side * voxel);
     if (loss.share > 0.5 || loss.volumeLeft < 0.5) throw Error(ErrorCode::Unusable, text);
     grid.insertMeta(kLostKey, openvdb::FloatMetadata(float(loss.share)));
-    message(ctx, MessageLevel::Warning, text);
+    const bool much = loss.share >= kWarned || whole > 0 || loss.volumeLeft < 0.9;
+    message(ctx, much ? MessageLevel::Warning : MessageLevel::Note, text);
     noteBounds(summary, grid, name, ctx);
 }
 

@@ -114,9 +114,15 @@ private:
     }
 
     void repairSigns(const BandContacts& contacts) {
-        const bool believed = field().background() != 0;
+        bool believed = field().background() != 0;
         auto regions = std::make_unique<InactiveRegions>(field().tree(), believed, mContext);
         InactiveRegions::Votes out = regions->outside();
+        if (believed && out.negative + out.positive == 0) {
+            // The background differs in sign from all that touches the voxels: one of the two is wrong.
+            believed = false;
+            regions = std::make_unique<InactiveRegions>(field().tree(), believed, mContext);
+            out = regions->outside();
+        }
         const double share = double(out.negative) / std::max(1.0, double(out.negative + out.positive));
         const std::size_t agreeing = contacts.inside.voxels + contacts.outside.voxels;
         // Without a positive value there is nothing that a turn would make solid.

@@ -3,8 +3,8 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/geometry/local_points.h"
 #include "libvdbsynth/io/path.h"
-#include "libvdbsynth/io/readers/gzip.h"
 #include "libvdbsynth/io/points/point_readers.h"
+#include "libvdbsynth/io/readers/gzip.h"
 #include "libvdbsynth/io/readers/whole_file.h"
 
 #include <algorithm>

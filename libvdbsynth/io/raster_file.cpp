@@ -1,8 +1,8 @@
 #include "libvdbsynth/io/raster_file.h"
 
 #include "libvdbsynth/base/error.h"
-#include "libvdbsynth/base/printable_text.h"
 #include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/base/printable_text.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/readers/raster_readers.h"
 #include "libvdbsynth/io/readers/whole_file.h"

@@ -18,7 +18,7 @@ struct RasterField {
     std::array<Vec3d, 3> axes = kWorldAxes;  ///< unit directions of the voxels, at right angles
     /// Share of an image's pixels whose heights lie farther than a voxel from the surface.
     double lostShare = 0;
-    std::string description;                 ///< the choices made, one line
+    std::string description;  ///< the choices made, one line
 };
 
 inline constexpr float kRasterFieldLimit = 4.f;  ///< largest value of the fields here

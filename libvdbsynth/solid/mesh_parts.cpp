@@ -144,7 +144,8 @@ private:
                 mParts.parts[mParts.partOf[first->face]].role = PartRole::Open;
         });
         for (MeshPart& part : mParts.parts)
-            if (std::abs(part.signedVolume) < 1e-9 * part.area * std::sqrt(part.area)) part.role = PartRole::Open;
+            if (std::abs(part.signedVolume) < 1e-9 * part.area * std::sqrt(part.area))
+                part.role = PartRole::Open;
     }
 
     const Mesh& mMesh;

@@ -32,10 +32,16 @@ void refuseUnusable(const std::string& path, const openvdb::FloatGrid& grid) {
     if (!rangeOf(grid).finite)
         throw Error(ErrorCode::BadData,
                     path + ": grid \"" + grid.getName() + "\" holds NaN or infinite values");
-    // OpenVDB throws for some singular transforms.
-    const openvdb::Mat4d m =
-        behindWall(ErrorCode::BadData, path + ": grid \"" + grid.getName() + "\" has a bad transform",
-                   [&] { return grid.transform().baseMap()->getAffineMap()->getMat4(); });
+    openvdb::Mat4d m;
+    try {
+        m = grid.transform().baseMap()->getAffineMap()->getMat4();
+    } catch (const openvdb::Exception&) {
+        // For singular transforms, and for those of tiny voxels.
+        throw Error(ErrorCode::BadData,
+                    path + ": grid \"" + grid.getName() +
+                        "\" has a singular transform, or voxels under about 0.000015, which OpenVDB does not "
+                        "allow; scale its transform by 1000 where it was made");
+    }
     for (int i = 0; i < 16; ++i)
         if (!std::isfinite(m.asPointer()[i]))
             throw Error(ErrorCode::BadData, path + ": grid \"" + grid.getName() +

@@ -129,14 +129,14 @@ class Dialects(Reported):
 
     def test_clamped_and_in_voxels(self):
         for band in (0.1, 0.2, 0.5):
-            self.near(self.volume(self.dense(numpy.clip(self.box(), -band, band))), BOX, 0.04)
+            self.near(self.volume(self.dense(numpy.clip(self.box(), -band, band))), BOX, 0.05)
         self.near(self.volume(self.dense(self.box() / 0.1), says="in voxels"), BOX, 0.04)
 
     def test_cut_by_the_end_of_its_voxels(self):
         said = "cut open at low x, high x, low y, high y, low z, high z"
         volume = self.volume(self.dense(self.ball(12)), says=said)
-        self.assertGreater(volume, 0.9 * BALL)
-        self.assertLess(volume, BALL)
+        # Six caps are missing, of 0.25 where the voxels end at 1.25.
+        self.near(volume, BALL - 6 * math.pi * 0.25 ** 2 * (3 * 1.5 - 0.25) / 3, 0.02)
 
     def test_numbers_that_are_no_distances(self):
         noise = numpy.random.default_rng(1).normal(size=(31, 31, 31))

@@ -1,9 +1,9 @@
 // One reader under libFuzzer: FUZZ_CALL is the call, of `path` and `content`. Anything but a result or an
 // Error is found.
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/io/points/point_readers.h"
 #include "libvdbsynth/io/readers/gzip.h"
 #include "libvdbsynth/io/readers/mesh_readers.h"
-#include "libvdbsynth/io/points/point_readers.h"
 #include "libvdbsynth/io/readers/raster_readers.h"
 
 #include <cstddef>

@@ -6,7 +6,8 @@
 
 namespace vdbsynth::cli {
 
-/// What `info` and the report say of a surface: area, signed volume, bounds, closed parts, voids and open parts.
+/// What `info` and the report say of a surface: area, signed volume, bounds, closed parts, voids and open
+/// parts.
 nlohmann::ordered_json surfaceJson(const Mesh& mesh, const RunContext& ctx);
 
 }  // namespace vdbsynth::cli

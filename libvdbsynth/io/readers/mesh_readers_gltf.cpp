@@ -1,7 +1,7 @@
 // The meshes and points of glTF files.
+#include "libvdbsynth/io/points/point_readers.h"
 #include "libvdbsynth/io/readers/mesh_readers.h"
 #include "libvdbsynth/io/readers/mesh_readers_gltf_steps.h"
-#include "libvdbsynth/io/points/point_readers.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,9 @@
 // element and property is skipped by its declared size.
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/printable_text.h"
+#include "libvdbsynth/io/points/point_readers.h"
 #include "libvdbsynth/io/readers/mesh_readers.h"
 #include "libvdbsynth/io/readers/ply_file.h"
-#include "libvdbsynth/io/points/point_readers.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,9 +9,9 @@ namespace vdbsynth {
 
 /// A field of which the sign can be believed everywhere: negative inside, positive outside and beyond.
 struct RepairedField {
-    FloatGridPtr field;             ///< the given one where nothing was wrong
-    bool measureAnew = false;       ///< only its zero level is to be believed, not its distances
-    float halfWidth = 3;            ///< [voxels] of the band that is to be measured anew
+    FloatGridPtr field;               ///< the given one where nothing was wrong
+    bool measureAnew = false;         ///< only its zero level is to be believed, not its distances
+    float halfWidth = 3;              ///< [voxels] of the band that is to be measured anew
     std::vector<std::string> said{};  ///< what was wrong and what became of it, one part of a sentence each
 };
 

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "libvdbsynth/base/error.h"
-#include "libvdbsynth/io/readers/mesh_readers.h"
 #include "libvdbsynth/io/points/point_readers.h"
+#include "libvdbsynth/io/readers/mesh_readers.h"
 #include "tests/support/makers.h"
 #include "tests/support/said.h"
 #include "tests/support/stl_files.h"

@@ -158,7 +158,31 @@ std::size_t weldVertices(Mesh& mesh) {
     return welded;
 }
 
+namespace {
+
+// Two-sided quads may split along different diagonals, so they are compared whole. @return number removed
+std::size_t removeDuplicateQuads(Mesh& mesh) {
+    std::vector<std::pair<Quad, std::uint32_t>> keys;
+    for (std::uint32_t i = 0; i < mesh.quads.size(); ++i) {
+        keys.push_back({mesh.quads[i], i});
+        std::sort(keys.back().first.begin(), keys.back().first.end());
+    }
+    std::sort(keys.begin(), keys.end());
+    std::vector<char> keep(mesh.quads.size(), 1);
+    for (std::size_t i = 1; i < keys.size(); ++i)
+        if (keys[i].first == keys[i - 1].first) keep[keys[i].second] = 0;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < keep.size(); ++i)
+        if (keep[i]) mesh.quads[kept++] = mesh.quads[i];
+    const std::size_t removed = mesh.quads.size() - kept;
+    mesh.quads.resize(kept);
+    return removed;
+}
+
+}  // namespace
+
 std::size_t removeDuplicateFaces(Mesh& mesh) {
+    const std::size_t quads = removeDuplicateQuads(mesh);
     std::vector<Triangle> triangles = triangulated(mesh);
     mesh.quads.clear();
     mesh.triangles.clear();
@@ -180,7 +204,7 @@ std::size_t removeDuplicateFaces(Mesh& mesh) {
     }
     for (std::size_t i = 0; i < triangles.size(); ++i)
         if (keep[i]) mesh.triangles.push_back(triangles[i]);
-    return duplicates;
+    return duplicates + 2 * quads;
 }
 
 std::size_t orientFaces(Mesh& mesh) {

@@ -113,6 +113,7 @@ bool holdsPoints(const std::string& path) {
     const bool gltf = isGltf(extension);
     if (extension != "ply" && extension != "npy" && !gltf) return false;
     const std::string start = startOf(path);
+    if (start.empty()) return false;  // which its reader will say
     if (extension == "npy") return npyHoldsPoints(path, isGzip(start) ? readWholeFile(path) : start);
     const bool part =
         !isGzip(start) && (gltf ? holdsGltfJson(start) : start.find("end_header") != std::string::npos);

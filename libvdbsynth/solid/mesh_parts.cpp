@@ -251,9 +251,9 @@ private:
             const double w = std::abs(winding.at(cornersOf(mMesh, mTriangles[mFaces[i]]).middle()));
             if (w < 0.25) return false;
             ++tried;
-            inside += w > 0.5 ? 1 : 0;
+            inside += w > 0.75 ? 1 : 0;
         }
-        // Faces that touch the outer part from inside see a half.
+        // Faces that touch the outer part from inside see a half, as do all of a part that coincides with it.
         return 4 * inside >= 3 * tried;
     }
 

@@ -3,6 +3,7 @@
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/distance/winding_number.h"
+#include "libvdbsynth/grid/field_sampling.h"
 #include "libvdbsynth/math/lattice.h"
 
 #include <algorithm>
@@ -107,7 +108,10 @@ public:
         loss.outerArea = mArea;
         const double solid = mVolume > 0 ? enclosedVolume(mResult, mContext) : 0;
         const bool shrunk = mVolume > 0 && solid < 0.9 * mVolume;
-        if (mLost.empty() && !shrunk) return loss;
+        mParts = meshParts(mMesh, mContext);
+        findVanished();
+        const bool vanished = std::find(mVanished.begin(), mVanished.end(), 1) != mVanished.end();
+        if (mLost.empty() && !shrunk && !vanished) return loss;
         const WindingNumber winding(mMesh, mContext);
         const double outer = outerShare(winding);
         loss.outerArea = mArea * outer;
@@ -115,7 +119,10 @@ public:
         dropInner(winding);
         // A wall's mean thickness.
         if (loss.volumeLeft < 1) loss.keepingVoxel = std::min(0.9, mVolume / mArea);
-        if (mLost.empty()) return loss;
+        if (mLost.empty()) {
+            countLost(loss);
+            return loss;
+        }
         double lost = 0;
         loss.boxMin = loss.boxMax = mLost.front().place;
         for (const Lost& place : mLost) {
@@ -159,15 +166,43 @@ private:
         }
     }
 
+    // Parts of which the level set has no trace: nowhere just inside a solid is it solid, nowhere just inside
+    // a void is it void. Beside another part they may yet be within a voxel of its surface.
+    void findVanished() {
+        mVanished.assign(mParts.parts.size(), 1);
+        std::vector<std::size_t> tried(mParts.parts.size(), 0);
+        for (std::size_t f = 0; f < mTriangles.size(); ++f) {
+            const std::size_t part = mParts.partOf[f];
+            const PartRole role = mParts.parts[part].role;
+            if (role != PartRole::Solid && role != PartRole::Cavity) mVanished[part] = 0;
+            if (!mVanished[part] || tried[part] > 4096) continue;
+            const Face face = faceOf(mMesh, mTriangles[f]);
+            const double side = role == PartRole::Solid ? -1 : 1;
+            // No deeper than its middle.
+            const Vec3d extent = mParts.parts[part].boxMax - mParts.parts[part].boxMin;
+            const double deepest = std::min({extent.x, extent.y, extent.z}) / 2;
+            for (std::size_t i = 0; i < 8 && mVanished[part]; ++i, ++tried[part])
+                for (const double depth : {0.0, 0.25, 0.5, 1.0}) {
+                    const Vec3d place = placeOn(face, i, 8) + face.normal * (side * std::min(depth, deepest));
+                    const bool solid = sampleTrilinear(mResult, cast<float>(place)) < 0;
+                    if (solid == (role == PartRole::Solid)) mVanished[part] = 0;
+                }
+        }
+    }
+
     bool isInner(const WindingNumber& winding, const Vec3d& place, const Vec3d& normal) const {
         return winding.at(place + normal * kSideStep) > 0.5 && winding.at(place - normal * kSideStep) > 0.5;
+    }
+
+    bool isUnited(std::uint32_t face) const {
+        return mParts.parts[mParts.partOf[face]].role == PartRole::United;
     }
 
     void dropInner(const WindingNumber& winding) {
         std::vector<char> inner(mLost.size());
         parallelFor(mContext, mLost.size(), 64, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
-                inner[i] = isInner(winding, mLost[i].place, mLost[i].normal);
+                inner[i] = isUnited(mLost[i].face) || isInner(winding, mLost[i].place, mLost[i].normal);
         });
         std::size_t kept = 0;
         for (std::size_t i = 0; i < mLost.size(); ++i)
@@ -207,15 +242,19 @@ private:
     }
 
     void countLost(SurfaceLoss& loss) const {
-        const MeshParts parts = meshParts(mMesh, mContext);
+        const MeshParts& parts = mParts;
         std::vector<double> lost(parts.parts.size(), 0);
         for (const Lost& place : mLost) lost[parts.partOf[place.face]] += place.area;
         const PartCounts counts = countParts(parts);
         loss.solids = counts.solids;
         loss.cavities = counts.cavities;
         for (std::size_t i = 0; i < lost.size(); ++i) {
-            const bool gone = lost[i] > 0.5 * parts.parts[i].area;
+            const bool gone = mVanished[i] || lost[i] > 0.5 * parts.parts[i].area;
             const PartRole role = parts.parts[i].role;
+            if (mVanished[i] && loss.keepingVoxel == 0) {
+                const Vec3d extent = parts.parts[i].boxMax - parts.parts[i].boxMin;
+                loss.keepingVoxel = std::min({0.9, extent.x, extent.y, extent.z});
+            }
             loss.lostSolids += gone && role == PartRole::Solid ? 1 : 0;
             loss.lostCavities += gone && role == PartRole::Cavity ? 1 : 0;
             loss.lostOpen += gone && role == PartRole::Open ? 1 : 0;
@@ -228,6 +267,8 @@ private:
     const RunContext& mContext;
     double mArea = 0, mVolume = 0;  // [voxels^2], [voxels^3] or 0 if it is open
     std::vector<Lost> mLost;
+    MeshParts mParts;
+    std::vector<char> mVanished;  // of each part
 };
 
 // Share of a cell that is inside, from its corners, x slowest.
@@ -292,7 +333,8 @@ std::string lossText(const SurfaceLoss& loss, double voxelSize, double side) {
     if (loss.volumeLeft < 0.9)
         text += (text.empty() ? "" : " and ") + std::to_string(int(100 * (1 - loss.volumeLeft) + 0.5)) +
                 " % of its volume";
-    text += " lost";
+    if (text.empty()) text = "less than a thousandth of its surface";
+    text += loss.volumeLeft < 0.9 && loss.share >= 0.001 ? " are lost" : " is lost";
     if (loss.keepingVoxel > 0) text += ", as it is thinner than a voxel of " + roundedText(voxelSize, 4);
     std::string parts;
     const auto add = [&parts](std::size_t lost, std::size_t all, const char* one, const char* many) {

@@ -86,3 +86,16 @@ TEST_CASE("removeDuplicateFaces: double-sided faces become single ones", "[geome
     CHECK(twice.triangles == ball.triangles);
     CHECK(removeDuplicateFaces(twice) == 0);
 }
+
+TEST_CASE("removeDuplicateFaces: two-sided quads count once, whichever diagonal splits them",
+          "[geometry][hand]") {
+    Mesh mesh = test::boxMesh({0, 0, 0}, {1, 1, 1});
+    const std::vector<Quad> quads = mesh.quads;
+    for (Quad q : quads) {
+        std::swap(q[1], q[3]);
+        mesh.quads.push_back({q[1], q[2], q[3], q[0]});
+    }
+    CHECK(removeDuplicateFaces(mesh) == 12);
+    CHECK(mesh.triangles.size() == 12);
+    CHECK(edgeBalance(mesh) == EdgeBalance::Manifold);
+}

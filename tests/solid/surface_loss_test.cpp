@@ -130,3 +130,26 @@ TEST_CASE("surfaceLoss: the same for any number of threads, and it can be cancel
     stopped.cancel = &stop;
     CHECK(test::thrownBy([&] { surfaceLoss(both, field, stopped); }).code == int(ErrorCode::Cancelled));
 }
+
+TEST_CASE("surfaceLoss: a part that vanished beside another is said, though within a voxel of it",
+          "[solid][hand]") {
+    const Mesh both = joined(test::boxMesh({4, 4, 4}, {14, 14, 14}),
+                             test::boxMesh({14.3f, 8.2f, 8.2f}, {14.8f, 8.7f, 8.7f}));
+    const SurfaceLoss loss = surfaceLoss(both, boxField({4, 4, 4}, {14, 14, 14}, {24, 24, 24}));
+    CHECK(loss.lostSolids == 1);
+    CHECK(loss.keepingVoxel > 0);
+    CHECK(test::contains(lossText(loss, 1, 11), "1 of 2 closed parts"));
+}
+
+TEST_CASE("surfaceLoss: what is united with a void is none", "[solid][hand]") {
+    Mesh hollow = test::boxMesh({12, 12, 12}, {20, 20, 20});
+    hollow = joined(hollow, test::boxMesh({14, 14, 14}, {18, 18, 18}));
+    for (Quad& q : hollow.quads) std::swap(q[1], q[3]);
+    hollow = joined(hollow, test::boxMesh({4, 4, 4}, {28, 28, 28}));
+    const BrickField field = test::fieldFrom({32, 32, 32}, [](const Index3& p) {
+        const double outer = boxDistance(p, {4, 4, 4}, {28, 28, 28}),
+                     inner = boxDistance(p, {12, 12, 12}, {20, 20, 20});
+        return float(std::clamp(std::max(outer, -inner), -3.0, 3.0));
+    });
+    CHECK(surfaceLoss(hollow, field).share == 0);
+}

@@ -2,9 +2,12 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
+#include "libvdbsynth/io/raster_file.h"
 #include "libvdbsynth/pipeline/convert/outputs.h"
 
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
 
 namespace vdbsynth::cli {
 namespace {
@@ -20,6 +23,16 @@ void requireKind(const std::string& as, const std::string& path) {
     if (as == "levelset") require(extension == "vdb", ".vdb");
     if (as == "heightfield") require(heights, ".png or .exr");
     if (as == "mesh") require(!heights && extension != "vdb", ".obj, .ply, .stl, .off, .glb or .gltf");
+}
+
+// --height is of images, as inputs and as outputs.
+void noteUnusedHeight(const Run& run, const std::vector<std::string>& paths) {
+    const auto isImage = [](const std::string& path) {
+        return extensionOf(path) == "png" || extensionOf(path) == "exr";
+    };
+    if (run.arguments.has("height") && !isRasterPath(run.arguments.inputs[0]) &&
+        std::none_of(paths.begin(), paths.end(), isImage))
+        message(run.context, MessageLevel::Note, "`height` has no effect without an image to read or write");
 }
 
 void convert(Run& run) {
@@ -42,6 +55,7 @@ void convert(Run& run) {
     requireModelPath(run.arguments.inputs[0]);
     const LevelSet model =
         withHalfWidth(run.load(run.arguments.inputs[0], modelOptions), modelOptions.halfWidth, run.context);
+    noteUnusedHeight(run, paths);
     outputs.metadata = run.metadata();
     writeModel(model, paths, outputs, run.outputs(), run.context);
     run.describe(model);

@@ -202,13 +202,17 @@ void RowText::numbers(std::vector<double>& values, std::vector<RowWord>& words) 
 
 bool RowText::hasDecimalCommas() const {
     std::size_t words = 0;
+    // Between separators that are no commas other words may stand.
+    const bool separated = line().find_first_of(";\t|") != std::string_view::npos;
     for (const char* at = mBegin; at < mEnd && *at != '#';) {
         if (endsWord(*at) || (*at == ',' && at > mBegin && at[-1] == '"')) {
             ++at;
             continue;
         }
         const char* end = wordEnd(at);
-        if (!mayHaveDecimalComma({at, std::size_t(end - at)})) return false;
+        const std::string_view word{at, std::size_t(end - at)};
+        const bool plain = separated && word.find(',') == std::string_view::npos;
+        if (!plain && !mayHaveDecimalComma(word)) return false;
         at = end;
         ++words;
     }

@@ -118,17 +118,21 @@ bool hasCavities(const MeshParts& parts) {
                        [](const MeshPart& part) { return part.role == PartRole::Cavity; });
 }
 
-void noteTurned(const OrientedParts& oriented, const std::string& name, const RunContext& ctx) {
+void noteTurned(const OrientedParts& oriented, const PartCounts& counts, const std::string& name,
+                const RunContext& ctx) {
     const auto parts = [](std::size_t count) {
         return std::to_string(count) + (count == 1 ? " part" : " parts");
     };
     if (oriented.flipped > 0)
         message(ctx, MessageLevel::Note,
-                name + ": " + parts(oriented.flipped) +
-                    " with normals turned; outermost parts are solid, opposed ones in them are voids");
-    if (oriented.removed > 0)
-        message(ctx, MessageLevel::Note,
-                name + ": " + parts(oriented.removed) + " inside a solid part united with it");
+                name + ": the normals of " + parts(oriented.flipped) + " turned: outermost parts are solid" +
+                    (counts.cavities > 0 ? ", opposed ones in them are voids" : ""));
+    if (counts.united > 0)
+        message(
+            ctx, MessageLevel::Note,
+            name + ": " + parts(counts.united) +
+                " inside another, with normals as its own, united with it; opposed normals make a void, or "
+                "in a void a solid");
 }
 
 // Welds, removes duplicates and orients.
@@ -156,7 +160,7 @@ Prepared prepare(const Mesh& mesh, const std::string& name, const RunContext& ct
         add(duplicates, " duplicate faces");
         add(flipped, " flipped faces");
     }
-    noteTurned(oriented, name, ctx);
+    noteTurned(oriented, countParts(parts), name, ctx);
     return prepared;
 }
 
@@ -293,7 +297,7 @@ FloatGridPtr solidAsIs(const Mesh& mesh, const Conversion& to) {
     const Mesh& use = oriented.mesh ? *oriented.mesh : mesh;
     const FloatGridPtr grid = hasCavities(parts) ? tryNested(mesh, parts, to) : tryOpenVdb(use, to);
     if (!grid) return nullptr;
-    noteTurned(oriented, to.name, to.ctx);
+    noteTurned(oriented, countParts(parts), to.name, to.ctx);
     requireKept(inVoxels(use, to.voxelSize), *grid, to.name, to.ctx);
     return grid;
 }

@@ -24,7 +24,7 @@ std::string boundsText(const Vec3d& low, const Vec3d& high) {
     const auto text = [](const Vec3d& p) {
         return roundedText(p.x, 4) + "," + roundedText(p.y, 4) + "," + roundedText(p.z, 4);
     };
-    return text(low) + " to " + text(high);
+    return text(low) + " .. " + text(high);
 }
 
 // A note if the solid ends over a voxel before the mesh does.
@@ -37,11 +37,14 @@ void noteBounds(const MeshSummary& summary, const openvdb::FloatGrid& grid, cons
                  summary.boxMax[axis] - box.max[axis] > 1.5;
     if (!shrunk) return;
     const double voxel = voxelSizeOf(grid);
-    const Vec3d low{box.min.x - 0.5, box.min.y - 0.5, box.min.z - 0.5},
-        high{box.max.x + 0.5, box.max.y + 0.5, box.max.z + 0.5};
+    Vec3d low = summary.boxMin, high = summary.boxMax;
+    for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = std::max(low[axis], box.min[axis] - 0.5);
+        high[axis] = std::min(high[axis], box.max[axis] + 0.5);
+    }
     message(ctx, MessageLevel::Note,
             name + ": its bounds shrink from " + boundsText(summary.boxMin * voxel, summary.boxMax * voxel) +
-                " to " + boundsText(low * voxel, high * voxel));
+                ", to " + boundsText(low * voxel, high * voxel));
 }
 
 }  // namespace

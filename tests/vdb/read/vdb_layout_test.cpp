@@ -78,7 +78,9 @@ TEST_CASE("plainText: no raw bytes, no end", "[vdb][fast]") {
     CHECK(plainText("").empty());
 }
 
-TEST_CASE("readVdb: cut off or damaged anywhere, it answers at once and in one plain line",
+// Behind the lists OpenVDB itself does not check lengths: tests/cli/reported_vdb_test.py damages those, in a
+// program of its own.
+TEST_CASE("readVdb: cut off anywhere or damaged in its lists, it answers at once and in one plain line",
           "[vdb][hostile]") {
     const test::TemporaryFolder folder;
     const std::string good = goodFile(folder);
@@ -92,12 +94,13 @@ TEST_CASE("readVdb: cut off or damaged anywhere, it answers at once and in one p
         for (const char c : thrown.message) CHECK((c >= ' ' && c <= '~'));
     };
     for (std::size_t n = 1; n < good.size(); n += 1 + good.size() / 200) answers(good.substr(0, n));
+    const std::size_t lists = good.find("UniformScaleMap");
+    REQUIRE(lists != std::string::npos);
     for (std::uint64_t i = 0; i < 300; ++i) {
         Random random(5, i);
         std::string bytes = good;
-        // The head more often than the voxels.
-        const auto at = std::size_t(random.uniform(0, i % 2 ? 700 : double(bytes.size())));
-        for (std::size_t k = at; k < std::min(bytes.size(), at + (i % 3 ? 1 : 4)); ++k)
+        const auto at = std::size_t(random.uniform(0, double(lists - 4)));
+        for (std::size_t k = at; k < at + (i % 3 ? 1 : 4); ++k)
             bytes[k] = char(i % 5 ? int(random.uniform(0, 256)) : 255);
         answers(bytes);
     }

@@ -32,25 +32,21 @@ void refuseUnusable(const std::string& path, const openvdb::FloatGrid& grid) {
     if (!rangeOf(grid).finite)
         throw Error(ErrorCode::BadData,
                     path + ": grid \"" + grid.getName() + "\" holds NaN or infinite values");
-    openvdb::Mat4d m;
-    try {
-        m = grid.transform().baseMap()->getAffineMap()->getMat4();
-    } catch (const openvdb::Exception&) {
-        // For singular transforms, and for those of tiny voxels.
-        throw Error(ErrorCode::BadData,
-                    path + ": grid \"" + grid.getName() +
-                        "\" has a singular transform, or voxels under about 0.000015, which OpenVDB does not "
-                        "allow; scale its transform by 1000 where it was made");
-    }
+    const openvdb::Vec3d size = grid.voxelSize();
+    const double volume = size[0] * size[1] * size[2];
+    if (volume > 0 && volume < kLeastVoxel)
+        throw Error(ErrorCode::BadData, path + ": grid \"" + grid.getName() + "\" has voxels of " +
+                                            roundedText(size[0], 3) +
+                                            ", and OpenVDB works with none under about 0.000015; scale its "
+                                            "transform by 1000 where it was made");
+    // OpenVDB throws for some singular transforms.
+    const openvdb::Mat4d m =
+        behindWall(ErrorCode::BadData, path + ": grid \"" + grid.getName() + "\" has a bad transform",
+                   [&] { return grid.transform().baseMap()->getAffineMap()->getMat4(); });
     for (int i = 0; i < 16; ++i)
         if (!std::isfinite(m.asPointer()[i]))
             throw Error(ErrorCode::BadData, path + ": grid \"" + grid.getName() +
                                                 "\" has a transform with NaN or infinite values");
-    if (std::abs(grid.voxelSize().length()) > 0 && std::abs(m.det()) < kLeastVoxel)
-        throw Error(ErrorCode::BadData, path + ": grid \"" + grid.getName() + "\" has voxels of " +
-                                            roundedText(grid.voxelSize()[0], 3) +
-                                            ", and OpenVDB allows none under about 0.000015; scale its "
-                                            "transform by 1000 where it was made, or set `unitScale`");
     if (std::abs(m.det()) < 1e-300)
         throw Error(ErrorCode::BadData, path + ": grid \"" + grid.getName() + "\" has a singular transform");
 }
@@ -186,8 +182,9 @@ LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& gri
                 ", not a level set; set the value of its surface with `iso` VALUE (its values range from " +
                 std::to_string(rangeOf(*grid).minimum) + " to " + std::to_string(rangeOf(*grid).maximum) +
                 ")");
-    RepairedField sound{asFog ? emptyAround(path, grid, *options.iso, ctx)
-                              : atDistance(path, grid, kind, options.iso, ctx)};
+    RepairedField sound;
+    sound.field =
+        asFog ? emptyAround(path, grid, *options.iso, ctx) : atDistance(path, grid, kind, options.iso, ctx);
     if (!asFog) {
         sound = repairedField(sound.field, ctx);
         for (const std::string& text : sound.said)

@@ -1,7 +1,7 @@
 """VDB files as other programs write them: what people reported, and what is near it."""
 import math
+import resource
 import struct
-import time
 import unittest
 
 from reported import Reported
@@ -14,6 +14,12 @@ except ImportError:
 
 BOX = 2 * 1.2 * 0.8
 BALL = 4 / 3 * math.pi * 1.5 ** 3
+
+
+def used():
+    """[s] of processor time that programs run from here have taken: no other load counts."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 class Files(Reported):
@@ -135,8 +141,8 @@ class Dialects(Reported):
     def test_cut_by_the_end_of_its_voxels(self):
         said = "cut open at low x, high x, low y, high y, low z, high z"
         volume = self.volume(self.dense(self.ball(12)), says=said)
-        # Six caps are missing, of 0.25 where the voxels end at 1.25.
-        self.near(volume, BALL - 6 * math.pi * 0.25 ** 2 * (3 * 1.5 - 0.25) / 3, 0.02)
+        cap = math.pi * 0.25 ** 2 * (3 * 1.5 - 0.25) / 3
+        self.near(volume, BALL - 6 * cap)
 
     def test_numbers_that_are_no_distances(self):
         noise = numpy.random.default_rng(1).normal(size=(31, 31, 31))
@@ -172,14 +178,14 @@ class Damage(Reported):
         ball = vdb.createLevelSetSphere(radius=10)
         vdb.write(self.path("a.vdb"), grids=[ball])
         good = self.read("a.vdb")
-        began = time.time()
+        began = used()
         for cut in (10, 60, 200, len(good) // 2, len(good) - 1):
             self.write("b.vdb", good[:cut])
             self.fails(3, "b.vdb", "info", "b.vdb")
-        for at in (57, 61, 65, len(good) // 3):
+        for at in (57, 61, 65, *range(100, len(good), len(good) // 20)):
             self.write("b.vdb", good[:at] + b"\xff" * 8 + good[at + 8:])
             self.assertIn(self.run_tool("info", "b.vdb").returncode, (0, 3))
-        self.assertLess(time.time() - began, 60)
+        self.assertLess(used() - began, 30)
 
 
 if __name__ == "__main__":

@@ -57,6 +57,12 @@ std::uint64_t InactiveRegions::minorities() const {
     return count;
 }
 
+bool InactiveRegions::hasUnvoted() const {
+    for (int i = 0; i < int(mParent.size()); ++i)
+        if (find(i) == i && !isOutside(i) && votes(i).negative + votes(i).positive == 0) return true;
+    return false;
+}
+
 int InactiveRegions::added() {
     mParent.push_back(int(mParent.size()));
     mVotes.push_back({});

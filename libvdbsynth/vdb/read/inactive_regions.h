@@ -29,6 +29,9 @@ public:
     /// Where active voxels touch a region that mostly touches the other sign, the outside left out.
     std::uint64_t minorities() const;
 
+    /// True if some region but the outside touches no active voxel, so that nothing tells its sign.
+    bool hasUnvoted() const;
+
     /// The region of every inactive voxel; -1 where active.
     const openvdb::Int32Tree& labels() const { return mLabels; }
     int find(int label) const;

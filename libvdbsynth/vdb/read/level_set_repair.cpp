@@ -116,19 +116,18 @@ private:
     void repairSigns(const BandContacts& contacts) {
         bool believed = field().background() != 0;
         auto regions = std::make_unique<InactiveRegions>(field().tree(), believed, mContext);
-        InactiveRegions::Votes out = regions->outside();
-        if (believed && out.negative + out.positive == 0) {
-            // The background differs in sign from all that touches the voxels: one of the two is wrong.
+        // Signs that contradict each other away from the band: regions are told by their connections alone.
+        const bool outsideUnvoted = regions->outside().negative + regions->outside().positive == 0;
+        if (believed && (regions->hasUnvoted() || (outsideUnvoted && field().background() < 0))) {
             believed = false;
             regions = std::make_unique<InactiveRegions>(field().tree(), believed, mContext);
-            out = regions->outside();
         }
+        InactiveRegions::Votes out = regions->outside();
         const double share = double(out.negative) / std::max(1.0, double(out.negative + out.positive));
         const std::size_t agreeing = contacts.inside.voxels + contacts.outside.voxels;
-        // Without a positive value there is nothing that a turn would make solid.
-        mTurned = rangeOf(field()).maximum > 0 &&
-                  (field().background() > 0 ? share >= 0.97 && 2 * contacts.jumps >= agreeing
-                                            : share >= 0.97 || (believed && share > 0.5));
+        mTurned = field().background() > 0 ? share >= 0.97 && 2 * contacts.jumps >= agreeing
+                                           : share >= 0.97 || (field().background() < 0 && share > 0.5);
+        mTurned = mTurned && rangeOf(field()).maximum > 0;
         if (mTurned) {
             turn();
             std::swap(out.negative, out.positive);

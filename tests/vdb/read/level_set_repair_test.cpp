@@ -80,6 +80,27 @@ TEST_CASE("repairedField: a level set with its signs turned, in four dialects", 
     becomes(bandGrid(ballField(10), 15, kVoxel, band), kBall, "signs are turned");
 }
 
+TEST_CASE("repairedField: constant regions whose signs contradict the voxels beside them",
+          "[vdb][property]") {
+    // Values of voxels and the background were turned, those of larger regions were not.
+    Band band;
+    band.sign = -1;
+    band.background = -3;
+    band.interior = 3;
+    const auto grid = bandGrid(ballField(10), 15, kVoxel, band);
+    auto tile = grid->tree().beginValueOff();
+    tile.setMaxDepth(openvdb::FloatTree::ValueOffIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile) tile.setValue(-*tile);
+    becomes(grid, kBall, "signs are turned");
+    // The inside of leaves is marked, larger regions amid it are not.
+    const auto large = bandGrid(ballField(30), 36, kVoxel);
+    large->tree().prune();
+    auto inner = large->tree().beginValueOff();
+    inner.setMaxDepth(openvdb::FloatTree::ValueOffIter::LEAF_DEPTH - 1);
+    for (; inner; ++inner) inner.setValue(float(3 * kVoxel));
+    becomes(large, kBall * 27, "filled from the signs");
+}
+
 TEST_CASE("repairedField: an inside that is marked outside is filled", "[vdb][property]") {
     for (const double width : {1.0, 2.0, 3.0}) {
         Band band;
@@ -179,18 +200,21 @@ TEST_CASE("repairedField: a solid cut open is closed flat where it was cut", "[v
         return copy;
     };
     // Half a voxel beyond the last layer.
-    const double halved = kBall / 2 + 3.14159 * (100 * 0.5 - 0.125 / 3);
-    becomes(clipped({{-30, -30, -30}, {30, 30, 0}}), halved, "cut open at high z");
-    becomes(clipped({{0, -30, -30}, {30, 30, 30}}), halved, "cut open at low x");
+    const double halfBall = kBall / 2 + 3.14159 * (100 * 0.5 - 0.125 / 3);
+    becomes(clipped({{-30, -30, -30}, {30, 30, 0}}), halfBall, "cut open at high z");
+    becomes(clipped({{0, -30, -30}, {30, 30, 30}}), halfBall, "cut open at low x");
     const Read octant = read(clipped({{0, 0, 0}, {30, 30, 30}}));
     CHECK(test::contains(octant.said, "low x, low y, low z"));
-    CHECK(octant.volume() == Approx(kBall / 8 * 1.22).epsilon(0.03));
+    double voxels = 0;
+    for (auto it = openvdb::CoordBBox({0, 0, 0}, {10, 10, 10}).begin(); it; ++it)
+        voxels += grid->tree().getValue(*it) < 0 ? 1 : 0;
+    CHECK(octant.volume() == voxels);
     // Only its active voxels were copied, so that its inside is lost too.
     Band lost;
     lost.interior = 3;
     const auto open = bandGrid(ballField(10), 15, kVoxel, lost);
     open->clip({{-30, -30, -30}, {30, 30, 0}});
-    becomes(open, halved, "cut open at high z");
+    becomes(open, halfBall, "cut open at high z");
     // One face within the solid, away from its band.
     becomes(clipped({{-3, -3, 0}, {3, 3, 30}}), 7 * 7 * 9.9, "low z", 0.05);
     // A dense box that ends amid the solid.
@@ -204,9 +228,8 @@ TEST_CASE("repairedField: cubic solids of pores keep their sense where the box c
         for (int i = 0; i < 3; ++i) q[i] = p[i] - 10 * std::round(p[i] / 10);
         return 4 - q.length();
     };
-    const Read result = read(denseGrid(pores, 18, kVoxel, 0));
-    INFO(result.said);
-    CHECK(result.volume() > 0.65 * 37 * 37 * 37);
+    const Read result = read(denseGrid(pores, 12, kVoxel, 0));
+    CHECK(result.volume() > 0.6 * 25 * 25 * 25);
     CHECK(test::contains(result.said, "cut open at low x, high x, low y, high y, low z, high z"));
 }
 
@@ -257,12 +280,15 @@ TEST_CASE("repairedField: fields without an inside or without voxels", "[vdb][de
     full->setTransform(openvdb::math::Transform::createLinearTransform(kVoxel));
     full->setGridClass(openvdb::GRID_LEVEL_SET);
     CHECK(said(full).code == -1);
-    // A single constant region of the upper tree, beside the background.
+    // What no band touches has no sign of its own.
     const auto tile = openvdb::FloatGrid::create(3.f);
     tile->tree().addTile(2, {0, 0, 0}, -3.f, false);
     tile->tree().setValue({300, 0, 0}, 1.f);
     tile->setGridClass(openvdb::GRID_LEVEL_SET);
+    CHECK(said(tile).code == int(ErrorCode::EmptyInput));
     RunContext small;
     small.maxMemory = 100000;
-    CHECK(test::thrownBy([&] { modelFromGrids("a.vdb", {tile}, {}, small); }).code == int(ErrorCode::Memory));
+    const auto open = bandGrid(ballField(10), 15, kVoxel);
+    open->clip({{-30, -30, -30}, {30, 30, 0}});
+    CHECK(test::thrownBy([&] { modelFromGrids("a.vdb", {open}, {}, small); }).code == int(ErrorCode::Memory));
 }

@@ -25,8 +25,14 @@ std::size_t characterLength(std::string_view text) {
 
 }  // namespace
 
-std::string printableText(std::string_view text) {
+std::string printableText(std::string_view text, std::size_t most) {
     std::string out;
+    const bool cut = text.size() > most;
+    if (cut) {
+        // Not within a character.
+        while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0) == 0x80) --most;
+        text = text.substr(0, most);
+    }
     out.reserve(text.size());
     while (!text.empty()) {
         const std::size_t length = characterLength(text);
@@ -37,7 +43,7 @@ std::string printableText(std::string_view text) {
             out += first == '\n' || first == '\r' || first == '\t' ? ' ' : '?';
         text.remove_prefix(length > 0 ? length : 1);
     }
-    return out;
+    return cut ? out + "..." : out;
 }
 
 }  // namespace vdbsynth

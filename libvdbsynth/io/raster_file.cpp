@@ -2,7 +2,6 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
-#include "libvdbsynth/base/printable_text.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/readers/raster_readers.h"
 #include "libvdbsynth/io/readers/whole_file.h"
@@ -132,10 +131,6 @@ void sayTurn(const std::string& path, const Raster& raster, const RunContext& ct
     message(ctx, MessageLevel::Note,
             path + ": its axes are turned by " + roundedText(turnOf(raster.axes).degrees, 3) +
                 " degrees from those of the world; so are the voxels of the result");
-}
-
-std::string printable(std::string_view text, std::size_t most) {
-    return printableText(text.substr(0, most));
 }
 
 Raster makeRaster(const std::string& path, std::int64_t columns, std::int64_t rows, std::int64_t slices,

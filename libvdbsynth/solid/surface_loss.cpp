@@ -1,6 +1,5 @@
 #include "libvdbsynth/solid/surface_loss.h"
 
-#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/distance/winding_number.h"
 #include "libvdbsynth/grid/field_sampling.h"
@@ -8,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace vdbsynth {
 namespace {
@@ -271,86 +269,10 @@ private:
     std::vector<char> mVanished;  // of each part
 };
 
-// Share of a cell that is inside, from its corners, x slowest.
-double insideShare(const float (&v)[8]) {
-    constexpr float kPlaces[4] = {0.125f, 0.375f, 0.625f, 0.875f};
-    const auto mix = [](float a, float b, float t) { return a + (b - a) * t; };
-    int inside = 0;
-    for (float x : kPlaces)
-        for (float y : kPlaces) {
-            const float low = mix(mix(v[0], v[4], x), mix(v[2], v[6], x), y),
-                        high = mix(mix(v[1], v[5], x), mix(v[3], v[7], x), y);
-            for (float z : kPlaces) inside += mix(low, high, z) < 0 ? 1 : 0;
-        }
-    return inside / 64.0;
-}
-
 }  // namespace
-
-double enclosedVolume(const BrickField& field, const RunContext& ctx) {
-    constexpr int kSide = BrickField::kSide, kPadded = kSide + 1;
-    const IndexBox& box = field.box();
-    std::vector<Index3> corners;
-    forEachVoxel(
-        box, [&](const Index3& p) { corners.push_back(p); }, kSide);
-    std::vector<double> volumes(corners.size(), 0);
-    parallelFor(ctx, corners.size(), 16, [&](std::size_t begin, std::size_t end) {
-        float values[kPadded * kPadded * kPadded];
-        for (std::size_t i = begin; i < end; ++i) {
-            float value = 0;
-            const IndexBox cells = IndexBox::cube(corners[i], kPadded).intersection(box);
-            if (field.constantIn(cells, value)) {
-                const Index3 size = IndexBox::cube(corners[i], kSide).intersection(box).size();
-                volumes[i] = value < 0 ? double(latticeCount(size)) : 0;
-                continue;
-            }
-            field.readBox(corners[i], {kPadded, kPadded, kPadded}, values);
-            forEachVoxel(IndexBox::fromSize({kSide, kSide, kSide}), [&](const Index3& p) {
-                if (!box.contains(p + corners[i])) return;
-                float v[8];
-                int below = 0;
-                for (int c = 0; c < 8; ++c) {
-                    v[c] = values[latticeIndex(p + Index3{c >> 2, c >> 1 & 1, c & 1},
-                                               {kPadded, kPadded, kPadded})];
-                    below += v[c] < 0 ? 1 : 0;
-                }
-                volumes[i] += below == 8 ? 1 : below == 0 ? 0 : insideShare(v);
-            });
-        }
-    });
-    return std::accumulate(volumes.begin(), volumes.end(), 0.0);
-}
 
 SurfaceLoss surfaceLoss(const Mesh& mesh, const BrickField& result, const RunContext& ctx) {
     return Comparison(mesh, result, ctx).run();
-}
-
-std::string lossText(const SurfaceLoss& loss, double voxelSize, double side) {
-    std::string text = loss.share < 0.001   ? ""
-                       : loss.share >= 0.01 ? std::to_string(int(100 * loss.share + 0.5)) + " %"
-                                            : roundedText(100 * loss.share, 1) + " %";
-    if (!text.empty()) text += " of its surface";
-    if (loss.volumeLeft < 0.9)
-        text += (text.empty() ? "" : " and ") + std::to_string(int(100 * (1 - loss.volumeLeft) + 0.5)) +
-                " % of its volume";
-    if (text.empty()) text = "less than a thousandth of its surface";
-    text += loss.volumeLeft < 0.9 && loss.share >= 0.001 ? " are lost" : " is lost";
-    if (loss.keepingVoxel > 0) text += ", as it is thinner than a voxel of " + roundedText(voxelSize, 4);
-    std::string parts;
-    const auto add = [&parts](std::size_t lost, std::size_t all, const char* one, const char* many) {
-        if (lost == 0) return;
-        parts += (parts.empty() ? ": " : ", ") + std::to_string(lost);
-        if (all > 0) parts += " of " + std::to_string(all);
-        parts += std::string(" ") + ((all > 0 ? all : lost) == 1 ? one : many);
-    };
-    add(loss.lostSolids, loss.solids, "closed part", "closed parts");
-    add(loss.lostCavities, loss.cavities, "void", "voids");
-    add(loss.lostOpen, 0, "open part", "open parts");
-    text += parts + "; ";
-    const double resolution = loss.keepingVoxel > 0 ? side / (voxelSize * loss.keepingVoxel) : 0;
-    if (resolution > 0 && resolution < 10000)
-        text += "`resolution` " + std::to_string(int(std::ceil(resolution))) + " would keep it, or ";
-    return text + "`open` shell with a `thickness` of " + roundedText(2 * voxelSize, 3);
 }
 
 double pointLoss(const std::vector<Vec3f>& points, const std::vector<float>& reach, const BrickField& result,

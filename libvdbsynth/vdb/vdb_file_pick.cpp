@@ -2,9 +2,9 @@
 #include "libvdbsynth/vdb/vdb_file.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/printable_text.h"
 #include "libvdbsynth/vdb/read/field_kind.h"
 #include "libvdbsynth/vdb/read/grid_names.h"
-#include "libvdbsynth/vdb/read/vdb_layout.h"
 
 #include <openvdb/openvdb.h>
 
@@ -77,7 +77,7 @@ GridPtr firstOf(const std::string& path, const std::vector<GridPtr>& grids, cons
         const std::vector<std::string> names = uniqueNamesOf(grids);
         std::string pickedName;
         for (std::size_t i = 0; i < grids.size(); ++i)
-            if (grids[i] == picked) pickedName = plainText(names[i]);
+            if (grids[i] == picked) pickedName = printableText(names[i], 80);
         *note = path + ": grid \"" + pickedName + "\" is read, of " + std::to_string(able.size()) + " " +
                 what + ": " + listOf(grids) + "; `grid` names another";
     }

@@ -1,4 +1,5 @@
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/printable_text.h"
 #include "libvdbsynth/io/readers/gzip.h"
 #include "libvdbsynth/io/readers/whole_file.h"
 #include "libvdbsynth/vdb/coord.h"
@@ -43,7 +44,7 @@ void whileParsing(const std::string& path, std::uint64_t size, Work&& work) {
         throw Error(error.code(),
                     damaged + ": " +
                         (ended ? "it ends amid its voxels"
-                               : plainText(said.substr(std::min(said.size(), damaged.size() + 2)))) +
+                               : printableText(said.substr(std::min(said.size(), damaged.size() + 2)), 80)) +
                         "; copy or write it again");
     }
 }
@@ -100,6 +101,15 @@ void requireFile(const std::string& path) {
     if (!S_ISREG(status.st_mode)) throw Error(ErrorCode::Io, path + ": is not a regular file");
 }
 
+// OpenVDB throws when it is to set its own entries where a damaged file has them as of another type.
+void dropDamagedEntries(VdbContents& contents) {
+    for (const GridPtr& grid : contents.grids)
+        for (const char* entry : {openvdb::GridBase::META_GRID_CLASS, openvdb::GridBase::META_GRID_NAME}) {
+            const openvdb::Metadata::Ptr value = (*grid)[entry];
+            if (value && value->typeName() != "string") grid->removeMeta(entry);
+        }
+}
+
 // The beginning of a file, after checks that give better messages than OpenVDB's own.
 std::string beginningOf(const std::string& path, std::istream& file) {
     char magic[8] = {};
@@ -141,7 +151,7 @@ VdbContents readSupported(const std::string& path, std::uint64_t size, const Run
                 // If all types are registered, a grid that is not found lies beyond the file's end.
                 if (unsupported == 0) throw Error(ErrorCode::BadData, path + ": truncated or corrupt");
                 message(ctx, MessageLevel::Warning,
-                        path + ": grid \"" + plainText(*name) +
+                        path + ": grid \"" + printableText(*name, 80) +
                             "\" has a type that OpenVDB does not support; left out");
             }
     });
@@ -177,6 +187,7 @@ VdbContents readVdb(const std::string& path, const RunContext& ctx) {
         file.seekg(0);
         contents = readUnpacked(path, file, std::filesystem::file_size(path), ctx);
     }
+    dropDamagedEntries(contents);
     // By name, and grids of one name as the file has them.
     std::stable_sort(contents.grids.begin(), contents.grids.end(),
                      [](const GridPtr& a, const GridPtr& b) { return a->getName() < b->getName(); });

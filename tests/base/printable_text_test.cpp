@@ -36,3 +36,10 @@ TEST_CASE("printableText: every byte alone gives one printable byte", "[base][pr
         CHECK(out[0] < 0x7F);
     }
 }
+
+TEST_CASE("printableText: long text is cut, but not within a character", "[base][hand]") {
+    CHECK(printableText(std::string(1000, 'x'), 80) == std::string(80, 'x') + "...");
+    CHECK(printableText("abc", 3) == "abc");
+    CHECK(printableText("ab\xc3\xb6", 3) == "ab...");
+    CHECK(printableText("", 3).empty());
+}

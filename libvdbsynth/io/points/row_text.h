@@ -15,7 +15,7 @@ struct RowWord {
 /// Iterates over the lines of a text of numbers, whatever program wrote it: words are separated by blanks,
 /// tabs, commas, semicolons or pipes, and may be in double quotes; lines end with LF, CR LF or CR; a byte
 /// order mark is skipped. Nothing between two separators other than blanks is a missing number (NaN), as are
-/// nan, NA, null and the like.
+/// nan, NA, null and words of that meaning.
 class RowText {
 public:
     /// @param path, content  borrowed for the lifetime of this

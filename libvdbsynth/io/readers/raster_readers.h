@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace vdbsynth {
@@ -42,9 +41,6 @@ std::size_t chosenArray(const std::string& path, const std::vector<std::string>&
 
 // Notes by which angle a volume is turned from the axes of the world, if it is.
 void sayTurn(const std::string& path, const Raster& raster, const RunContext& ctx);
-
-// Text of a file for a message or a name: at most `most` bytes, "?" for each that is no printable UTF-8.
-std::string printable(std::string_view text, std::size_t most = 60);
 
 // A raster of this size with memory for its values.
 // @throw Error BadData (a side under 1 or over 2^24), Memory

@@ -1,5 +1,6 @@
 // NumPy's .npy, versions 1 to 3.
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/printable_text.h"
 #include "libvdbsynth/io/readers/raster_readers.h"
 
 #include <algorithm>
@@ -26,7 +27,7 @@ SampleType typeOf(const std::string& path, const std::string& code) {
         {"i8", SampleType::I64}, {"f2", SampleType::F16}, {"f4", SampleType::F32}, {"f8", SampleType::F64}};
     const auto found = types.find(code);
     if (found == types.end())
-        throw Error(ErrorCode::BadData, path + ": holds values of type '" + printable(code, 20) +
+        throw Error(ErrorCode::BadData, path + ": holds values of type '" + printableText(code, 20) +
                                             "'; only arrays of real numbers are supported");
     return found->second;
 }

@@ -1,6 +1,7 @@
 // Volumes whose headers are text: GSLIB (as SGeMS writes it) and INRIMAGE.
 #include "libvdbsynth/base/checked_product.h"
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/printable_text.h"
 #include "libvdbsynth/io/readers/raster_readers.h"
 #include "libvdbsynth/io/readers/text_scanner.h"
 
@@ -96,7 +97,7 @@ float gslibValue(TextScanner& scanner) {
     const std::string_view word = scanner.word();
     float value = 0;
     if (word.empty()) scanner.fail("the file ends where a number should be; it is truncated");
-    if (!parseAnyReal(word, value)) scanner.fail("\"" + printable(word, 40) + "\" is not a number");
+    if (!parseAnyReal(word, value)) scanner.fail("\"" + printableText(word, 40) + "\" is not a number");
     return value;
 }
 
@@ -108,7 +109,7 @@ std::vector<std::string> gslibNames(TextScanner& scanner, const std::string& con
     std::vector<std::string> names;
     for (std::int64_t i = 0; i < variables; ++i) {
         const std::string_view name = takeLine(scanner, content);
-        names.push_back(name.empty() ? "variable" + std::to_string(i + 1) : printable(name, 200));
+        names.push_back(name.empty() ? "variable" + std::to_string(i + 1) : printableText(name, 200));
     }
     return names;
 }
@@ -181,8 +182,8 @@ SampleType inrType(const std::string& path, const std::string& type, const std::
     if (!real && size == "8") return isSigned ? SampleType::I8 : SampleType::U8;
     if (!real && size == "16") return isSigned ? SampleType::I16 : SampleType::U16;
     if (!real && size == "32") return isSigned ? SampleType::I32 : SampleType::U32;
-    throw Error(ErrorCode::BadData, path + ": holds values of type " + printable(type, 20) + " of " +
-                                        printable(bits, 20) + ", which is not supported");
+    throw Error(ErrorCode::BadData, path + ": holds values of type " + printableText(type, 20) + " of " +
+                                        printableText(bits, 20) + ", which is not supported");
 }
 
 // Spacing and origin; a rotation has no reader that applies it.

@@ -2,6 +2,7 @@
 #include "libvdbsynth/base/checked_product.h"
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/base/printable_text.h"
 #include "libvdbsynth/io/readers/raster_readers.h"
 #include "libvdbsynth/io/readers/raster_readers_vti_steps.h"
 #include "libvdbsynth/raster/raster_alignment.h"
@@ -65,7 +66,7 @@ std::vector<VtkArray> arraysOf(const std::string& path, const pugi::xml_node& pi
     for (const char* kind : {"PointData", "CellData"})
         for (const pugi::xml_node& node : piece.child(kind).children("DataArray")) {
             VtkArray array;
-            array.name = printable(node.attribute("Name").as_string(), 200);
+            array.name = printableText(node.attribute("Name").as_string(), 200);
             if (array.name.empty()) array.name = "array" + std::to_string(arrays.size() + 1);
             array.type = node.attribute("type").as_string();
             array.format = node.attribute("format").as_string("ascii");
@@ -95,7 +96,7 @@ std::size_t standardArray(const pugi::xml_node& piece, const std::vector<VtkArra
         for (std::size_t i = 0; i < arrays.size(); ++i) {
             const VtkArray& array = arrays[i];
             if (array.cells != cells || array.components != 1 || array.type == "Bit") continue;
-            if (!marked.empty() && array.name == printable(marked, 200)) return i;
+            if (!marked.empty() && array.name == printableText(marked, 200)) return i;
             const bool ghosts = array.name == "vtkGhostType" || array.name == "vtkGhostLevels";
             if (first == arrays.size() && !ghosts) first = i;
         }
@@ -191,7 +192,7 @@ void readEncoding(const std::string& path, const pugi::xml_node& root, VtkEncodi
     const std::string compressor = root.attribute("compressor").as_string();
     encoding.compressed = !compressor.empty();
     if (encoding.compressed && compressor != "vtkZLibDataCompressor")
-        refuse(path, "is compressed with " + printable(compressor) +
+        refuse(path, "is compressed with " + printableText(compressor, 60) +
                          "; only zlib is supported: write it with vtkZLibDataCompressor or without one");
     encoding.swap = std::string(root.attribute("byte_order").as_string()) == "BigEndian";
     encoding.wideHeader = std::string(root.attribute("header_type").as_string()) == "UInt64";
@@ -255,7 +256,7 @@ Raster readVti(const std::string& path, const std::string& content, const Raster
                          first = image.child("Piece");
     const std::string kind = root.attribute("type").as_string();
     if (!kind.empty() && kind != "ImageData")
-        refuse(path, "is a VTK file of kind " + printable(kind) + "; only ImageData is read");
+        refuse(path, "is a VTK file of kind " + printableText(kind, 60) + "; only ImageData is read");
     if (!first) refuse(path, "not a VTK image (VTKFile, ImageData, Piece)");
     readEncoding(path, root, encoding);
     std::vector<std::string> names;

@@ -1,5 +1,7 @@
 // The data of VTK's XML files: text, base64 or raw, compressed or not.
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/printable_text.h"
+#include "libvdbsynth/io/readers/base64.h"
 #include "libvdbsynth/io/readers/gzip.h"
 #include "libvdbsynth/io/readers/raster_readers.h"
 #include "libvdbsynth/io/readers/raster_readers_vti_steps.h"
@@ -14,38 +16,6 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& path, const std::string& what) {
     throw Error(ErrorCode::BadData, path + ": " + what);
-}
-
-// Decodes base64 to its end, to padding or to `most` bytes. @return the number of characters used
-std::size_t decodeBase64(const std::string& path, const std::string& text, std::size_t at, std::size_t most,
-                         std::string& bytes) {
-    const std::size_t start = at;
-    std::uint32_t bits = 0;
-    int have = 0;
-    for (; at < text.size() && bytes.size() < most; ++at) {
-        const char c = text[at];
-        int value = 0;
-        if (c >= 'A' && c <= 'Z')
-            value = c - 'A';
-        else if (c >= 'a' && c <= 'z')
-            value = c - 'a' + 26;
-        else if (c >= '0' && c <= '9')
-            value = c - '0' + 52;
-        else if (c == '+')
-            value = 62;
-        else if (c == '/')
-            value = 63;
-        else if (c == '=' || c == ' ' || c == '\n' || c == '\r' || c == '\t')
-            continue;
-        else
-            refuse(path, "its base64 is invalid");
-        bits = bits << 6 | std::uint32_t(value);
-        have += 6;
-        if (have < 8) continue;
-        have -= 8;
-        bytes += char(bits >> have & 255);
-    }
-    return at - start;
 }
 
 // A block of binary data as stored in the file: a header of sizes, then bytes, perhaps in compressed pieces.
@@ -135,7 +105,7 @@ SampleType typeOf(const std::string& path, const VtkArray& array) {
         {"Float64", SampleType::F64}};
     const auto found = types.find(array.type);
     if (found == types.end())
-        refuse(path, "its array " + array.name + " is of type " + printable(array.type) +
+        refuse(path, "its array " + array.name + " is of type " + printableText(array.type, 60) +
                          ", which is not supported; numbers of 8 to 64 bits are");
     return found->second;
 }
@@ -146,7 +116,7 @@ void readText(const std::string& path, const std::string& text, std::vector<floa
         const std::string_view word = scanner.word();
         if (word.empty()) refuse(path, "truncated: its data array ends before its extent does");
         if (!parseAnyReal(word, value))
-            refuse(path, "its data holds \"" + printable(word) + "\", which is not a number");
+            refuse(path, "its data holds \"" + printableText(word, 60) + "\", which is not a number");
     }
 }
 

@@ -3,6 +3,7 @@
 #include "libvdbsynth/geometry/mesh.h"
 #include "libvdbsynth/grid/brick_field.h"
 #include "libvdbsynth/solid/mesh_parts.h"
+#include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
 #include "libvdbsynth/vdb/vdb_fwd.h"
 
 #include <string>
@@ -11,6 +12,22 @@
 namespace vdbsynth {
 
 // Steps of meshToSolid; for the .cpp files of mesh_to_level_set only.
+
+struct Conversion {
+    double voxelSize, halfWidth;
+    const SolidOptions& options;
+    const std::string& name;
+    const RunContext& ctx;
+};
+
+Mesh inVoxels(const Mesh& mesh, double voxelSize);
+/// @throw Error Memory (its band would need more than the context allows)
+void requireBandMemory(const Mesh& mesh, double voxelSize, double halfWidth, const std::string& name,
+                       const RunContext& ctx);
+/// OpenVDB's level set of a mesh that bounds a solid without voids, or null where it is not a good one.
+FloatGridPtr tryOpenVdb(const Mesh& mesh, const Conversion& to);
+/// A mesh as a closed solid, compared with it.
+FloatGridPtr solidOf(const Mesh& mesh, const Conversion& to);
 
 /// A field around faces in index space, negative inside by the winding number, its values distances [voxels]
 /// near the faces; its zero level also closes openings.

@@ -1,6 +1,6 @@
 #include "libvdbsynth/vdb/read/grid_names.h"
 
-#include "libvdbsynth/vdb/read/vdb_layout.h"
+#include "libvdbsynth/base/printable_text.h"
 
 #include <openvdb/openvdb.h>
 
@@ -45,7 +45,7 @@ std::string listOf(const std::vector<GridPtr>& grids) {
     const std::vector<std::string> names = uniqueNamesOf(grids);
     std::string list;
     for (std::size_t i = 0; i < grids.size() && i < kMost; ++i)
-        list += (i > 0 ? ", " : "") + plainText(names[i]) + " (" + grids[i]->valueType() + ")";
+        list += (i > 0 ? ", " : "") + printableText(names[i], 80) + " (" + grids[i]->valueType() + ")";
     if (grids.size() > kMost) list += ", and " + std::to_string(grids.size() - kMost) + " more";
     return list.empty() ? "no grids" : list;
 }

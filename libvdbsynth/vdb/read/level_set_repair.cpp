@@ -237,8 +237,8 @@ private:
                                      : "cut to " + roundedText(halfWidthOf(field()), 3)));
         } else if (std::min(range.minimum, contacts.deepest) < -1.001 * width ||
                    std::max(range.maximum, contacts.farthest) > 1.001 * width) {
-            trim(float(width));
-            say("its distances go on beyond its background; cut to " + roundedText(voxels, 3) +
+            trim(float(std::min(width, double(kHalfWidth) * mUnit)));
+            say("its distances go on beyond its background; cut to " + roundedText(halfWidthOf(field()), 3) +
                 " voxels on both sides");
         }
     }

@@ -1,6 +1,7 @@
 #include "libvdbsynth/vdb/read/vdb_layout.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/printable_text.h"
 
 #include <openvdb/version.h>
 
@@ -98,7 +99,7 @@ private:
         const std::string instance = text();
         const auto grid = number<std::int64_t>(), blocks = number<std::int64_t>(),
                    end = number<std::int64_t>();
-        mPlace = "grid \"" + plainText(entry.name.substr(0, entry.name.find('\x1e'))) + "\"";
+        mPlace = "grid \"" + printableText(entry.name.substr(0, entry.name.find('\x1e')), 80) + "\"";
         if (grid < 0 || std::uint64_t(grid) != mAt || blocks < grid || end < blocks) damaged();
         if (std::uint64_t(end) > mSize) cutOff();
         (void)number<std::uint32_t>();  // compression
@@ -118,14 +119,6 @@ private:
 };
 
 }  // namespace
-
-std::string plainText(const std::string& text) {
-    constexpr std::size_t kLongest = 80;
-    std::string plain = text.substr(0, kLongest);
-    std::replace_if(
-        plain.begin(), plain.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-    return plain + (text.size() > kLongest ? "..." : "");
-}
 
 std::vector<VdbEntry> vdbLayout(const std::string& path, std::istream& bytes, std::uint64_t size) {
     return Walker(path, bytes, size).walk();

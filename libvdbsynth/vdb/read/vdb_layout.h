@@ -12,10 +12,6 @@ struct VdbEntry {
     std::string type;  ///< of its tree, for example "Tree_float_5_4_3"
 };
 
-/// Text that came out of a file, fit for a message: what is no letter of plain text becomes '?', and what is
-/// long is cut.
-std::string plainText(const std::string& text);
-
 /// Follows a VDB file's own list of its grids, and compares counts, lengths and positions with the file's
 /// size: OpenVDB believes them all, takes memory for them and reads on beyond the end.
 /// @param bytes  at the file's beginning; where it stands afterwards is undefined

@@ -7,6 +7,7 @@
 #include "libvdbsynth/io/readers/raster_readers.h"
 #include "tests/support/makers.h"
 #include "tests/support/raster_files.h"
+#include "tests/support/raster_reading.h"
 
 using namespace vdbsynth;
 
@@ -14,19 +15,10 @@ namespace {
 
 using Floats = std::vector<float>;
 
-struct Read {
-    Raster raster;
-    std::string said;
-    test::Thrown thrown;
-};
+using Read = test::RasterReading;
 
 Read reading(const std::string& content, const std::string& name = "") {
-    Read read;
-    RunContext ctx;
-    ctx.maxMemory = 100000000;
-    ctx.onMessage = [&](MessageLevel, const std::string& text) { read.said += text + "\n"; };
-    read.thrown = test::thrownBy([&] { read.raster = readNpy("a.npy", content, {name}, ctx); });
-    return read;
+    return test::readRasterBy(readNpy, "a.npy", content, name);
 }
 
 std::string counted(const std::string& shape, std::size_t count, bool fortran = false) {

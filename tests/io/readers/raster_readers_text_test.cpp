@@ -6,6 +6,7 @@
 #include "libvdbsynth/io/readers/raster_readers.h"
 #include "tests/support/makers.h"
 #include "tests/support/raster_files.h"
+#include "tests/support/raster_reading.h"
 
 using namespace vdbsynth;
 
@@ -13,29 +14,15 @@ namespace {
 
 using Floats = std::vector<float>;
 
-struct Read {
-    Raster raster;
-    std::string said;
-    test::Thrown thrown;
-};
-
-template <typename Reader>
-Read readBy(Reader reader, const std::string& content, const std::string& name) {
-    Read read;
-    RunContext ctx;
-    ctx.maxMemory = 100000000;
-    ctx.onMessage = [&](MessageLevel, const std::string& text) { read.said += text + "\n"; };
-    read.thrown = test::thrownBy([&] { read.raster = reader("a", content, {name}, ctx); });
-    return read;
-}
+using Read = test::RasterReading;
 
 Read gslib(const std::string& content, const std::string& name = "") {
-    return readBy(readGslib, content, name);
+    return test::readRasterBy(readGslib, "a", content, name);
 }
 
 Read inr(const std::string& fields, const std::string& data, const std::string& name = "",
          const std::string& end = "##}\n") {
-    return readBy(readInr, "#INRIMAGE-4#{\n" + fields + end + data, name);
+    return test::readRasterBy(readInr, "a", "#INRIMAGE-4#{\n" + fields + end + data, name);
 }
 
 const std::string kBytes = "TYPE=unsigned fixed\nPIXSIZE=8 bits\nCPU=decm\n";

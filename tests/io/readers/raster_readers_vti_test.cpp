@@ -7,6 +7,7 @@
 #include "libvdbsynth/raster/raster_alignment.h"
 #include "tests/support/makers.h"
 #include "tests/support/raster_files.h"
+#include "tests/support/raster_reading.h"
 
 using namespace vdbsynth;
 
@@ -32,19 +33,10 @@ std::string array(const std::string& name, const std::string& values, int compon
            std::to_string(components) + "\" format=\"ascii\">" + values + "</DataArray>";
 }
 
-struct Read {
-    Raster raster;
-    std::string said;
-    test::Thrown thrown;
-};
+using Read = test::RasterReading;
 
 Read reading(const std::string& content, const std::string& name = "") {
-    Read read;
-    RunContext ctx;
-    ctx.maxMemory = 100000000;
-    ctx.onMessage = [&](MessageLevel, const std::string& text) { read.said += text + "\n"; };
-    read.thrown = test::thrownBy([&] { read.raster = readVti("a.vti", content, {name}, ctx); });
-    return read;
+    return test::readRasterBy(readVti, "a.vti", content, name);
 }
 
 const std::string kLine = "WholeExtent=\"0 2 0 0 0 0\" ";
@@ -196,16 +188,4 @@ TEST_CASE("readVti: what is not read is refused by name, without bytes of the fi
     std::string many;
     for (int i = 0; i < 5000; ++i) many += good;
     refused(image(kLine, many), "over 4096 pieces");
-}
-
-TEST_CASE("printable: text of a file for messages", "[io][oracle]") {
-    CHECK(printable("plain name") == "plain name");
-    CHECK(printable(std::string("a\0b\n\x7f", 5)) == "a?b ?");
-    CHECK(printable("Gr\xc3\xb6\xc3\x9f"
-                    "e \xe2\x82\xac \xf0\x9f\x98\x80") ==
-          "Gr\xc3\xb6\xc3\x9f"
-          "e \xe2\x82\xac \xf0\x9f\x98\x80");
-    CHECK(printable("\xff\xc3 \xe2\x82") == "?? ??");
-    CHECK(printable(std::string(1000, 'x')).size() == 60);
-    CHECK(printable("").empty());
 }

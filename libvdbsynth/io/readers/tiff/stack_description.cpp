@@ -63,7 +63,7 @@ StackDescription parseImageJ(std::string_view text) {
         if (key == "c0") parseReal(value, result.calibrationOffset);
         if (key == "c1") parseReal(value, result.calibrationFactor);
     }
-    // Function 0 is a straight line; ImageJ's others are densities of gels and the like.
+    // Function 0 is a straight line; ImageJ's others are densities of gels and other scales.
     result.calibrated = function == 0 && (result.calibrationOffset != 0 || result.calibrationFactor != 1);
     const bool counted = result.channels * result.slices * result.frames > 1;
     if (!counted) result.slices = result.images;

@@ -8,12 +8,13 @@ import sys
 # A room may include itself and what stands in its list.
 BELOW = {}
 for room, direct in [
-    ("base", []), ("math", ["base"]), ("geometry", ["math"]), ("grid", ["geometry"]),
+    ("base", []), ("math", ["base"]), ("geometry", ["math"]), ("points", ["geometry"]), ("grid", ["geometry"]),
     ("distance", ["grid"]), ("solid", ["distance"]), ("raster", ["distance"]), ("map", ["grid"]),
-    ("io", ["raster"]), ("procedural", ["distance"]), ("surface", ["grid"]), ("search", ["io"]),
+    ("io", ["raster"]), ("procedural", ["distance"]), ("surface", ["grid", "points"]), ("search", ["io"]),
+    ("coordinates", ["search", "surface"]), ("texture", ["coordinates", "map"]),
     ("synth", ["search", "map"]), ("analogy", ["search", "surface", "map"]), ("measure", ["distance", "synth"]),
     ("vdb", ["io", "map", "solid"]), ("render", ["vdb"]),
-    ("pipeline", ["measure", "synth", "analogy", "procedural", "render"]), ("tools", ["pipeline"]),
+    ("pipeline", ["measure", "synth", "analogy", "texture", "procedural", "render"]), ("tools", ["pipeline"]),
 ]:
     BELOW[room] = {room}.union(*[BELOW[d] for d in direct]) if direct else {room}
 
@@ -57,6 +58,7 @@ UNTESTED = {
     "measure/measures.h": "plain data",
     "procedural/kinds.h": "procedural/exemplar_test",
     "raster/raster_field.h": "plain data",
+    "texture/textured_sites.h": "plain data",
     "raster/raster_options.h": "plain data; pipeline/validation_test",
     "search/block_index_data.h": "search/block_index_test",
     "synth/synthesis_options.h": "plain data; pipeline/validation_test",

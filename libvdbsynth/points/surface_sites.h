@@ -27,8 +27,7 @@ struct SurfaceSites {
 /// @param points   [n] finite   @param normals  [n] length 1
 /// @param count    1..256
 /// @throw Error InvalidOption (count), ShapeMismatch (normals of another number), Cancelled
-/// @par Cost    O(n count), by a grid of cells in Morton order; points in crowded cells, or far from all
-///              others, by a kd-tree
+/// @par Cost    O(n log n) for each neighbour, by a kd-tree
 /// @par Repeats same bits for any number of threads
 SurfaceSites sitesOfPoints(std::vector<Vec3f> points, std::vector<Vec3f> normals, std::size_t count,
                            const RunContext& ctx = {});

@@ -3,6 +3,7 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/coordinates/coordinate_charts.h"
 #include "libvdbsynth/coordinates/coordinate_level.h"
 #include "libvdbsynth/coordinates/site_chart.h"
 #include "libvdbsynth/points/site_levels.h"
@@ -123,12 +124,6 @@ void continueParents(CoordinateLevel& fine, const CoordinateLevel& coarse,
     });
 }
 
-void beginAnywhere(CoordinateLevel& level, std::uint32_t number, const RunContext& ctx) {
-    level.coordinate.resize(level.sites.size());
-    for (std::size_t i = 0; i < level.sites.size(); ++i)
-        level.coordinate[i] = randomSource(level.samples[std::size_t(level.label[i])], ctx.seed, i, number);
-}
-
 // The sites in Morton order, which keeps neighbours near in memory.
 CoordinateLevel finestLevel(const CoordinateSites& sites, const std::vector<std::uint32_t>& order,
                             double texel, const RunContext& ctx) {
@@ -163,6 +158,8 @@ void validate(const CoordinateOptions& options) {
             "`coarsePasses`: is not between 0 and 100");
     require(options.similar >= 0 && options.similar <= 8, "`similar`: is not between 0 and 8");
     require(options.coherence >= 0 && options.coherence <= 10, "`coherence`: is not between 0 and 10");
+    require(options.uniformity >= 0 && options.uniformity <= 10, "`uniformity`: is not between 0 and 10");
+    require(options.histogram >= 0 && options.histogram <= 10, "`histogram`: is not between 0 and 10");
     require(options.levels >= 0 && options.levels <= 12, "`levels`: is not between 0 and 12");
 }
 
@@ -182,7 +179,7 @@ CoordinateResult synthesizeCoordinates(const CoordinateSites& sites, const std::
         const bool corrected = l > 0 || !dense || coarsest;
         if (corrected) readSamples(level, samples, options, ctx);
         if (coarsest)
-            beginAnywhere(level, std::uint32_t(l), ctx);
+            layCharts(level, std::uint32_t(l), ctx);
         else
             continueParents(level, hierarchy.levels[l + 1], hierarchy.parent[l], std::uint32_t(l), ctx);
         if (!corrected) continue;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace vdbsynth {
 namespace {
@@ -17,75 +18,89 @@ constexpr std::size_t kSearched = 16384;  // nodes whose similar nodes are searc
 constexpr double kApart = 0.05;           // share of the sample's side between similar nodes
 constexpr float kInexact = 1;             // epsilon of the search for similar nodes
 
-// Every so many vectors, at most kFitted.
-std::vector<float> someOf(const std::vector<float>& vectors, std::size_t length) {
-    const std::size_t rows = vectors.size() / length;
-    const std::size_t wanted = std::min(rows, kFitted);
-    std::vector<float> some;
-    some.reserve(wanted * length);
-    for (std::size_t i = 0; i < wanted; ++i) {
-        const float* row = vectors.data() + (i * rows / wanted) * length;
-        some.insert(some.end(), row, row + length);
-    }
-    return some;
-}
+// Writes a node's vector. Called from many threads.
+using VectorOf = std::function<void(std::int32_t node, float* out)>;
 
-// Axes of at least `count` numbers: those beyond the vectors' length are zero.
-PrincipalAxes axesOf(const std::vector<float>& vectors, std::size_t length, std::size_t count) {
-    PrincipalAxes axes = principalAxes(someOf(vectors, length), length, count, 2);
+// The `count` principal axes of the vectors of at most kFitted nodes, evenly chosen; beyond the vectors'
+// length they are zero.
+PrincipalAxes axesOf(std::size_t nodes, std::size_t length, std::size_t count, const VectorOf& vectorOf) {
+    const std::size_t fitted = std::min(nodes, kFitted);
+    std::vector<float> some(fitted * length);
+    for (std::size_t i = 0; i < fitted; ++i)
+        vectorOf(std::int32_t(i * nodes / fitted), some.data() + i * length);
+    PrincipalAxes axes = principalAxes(some, length, count, 2);
     axes.axes.resize(count * length, 0);
     axes.count = count;
     return axes;
 }
 
-// The 5 x 5 windows of all nodes, the outer places with less weight.
-std::vector<float> windowsOf(const SampleImage& image, const SampleLevel& level, const RunContext& ctx) {
-    const std::size_t channels = std::size_t(image.channels);
-    const std::size_t length = std::size_t((2 * kWindow + 1) * (2 * kWindow + 1)) * channels;
-    std::vector<float> weight;
-    for (int dy = -kWindow; dy <= kWindow; ++dy)
-        for (int dx = -kWindow; dx <= kWindow; ++dx)
-            weight.push_back(float(exponential(-double(dx * dx + dy * dy) / 8)));
-    std::vector<float> windows(std::size_t(level.width) * std::size_t(level.height) * length);
-    parallelFor(ctx, std::size_t(level.height), 8, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t y = begin; y < end; ++y)
-            for (int x = 0; x < level.width; ++x) {
-                const std::size_t node = y * std::size_t(level.width) + std::size_t(x);
-                const Vec2f at = level.centre(std::int32_t(node));
-                float* out = windows.data() + node * length;
-                std::size_t place = 0;
-                for (int dy = -kWindow; dy <= kWindow; ++dy)
-                    for (int dx = -kWindow; dx <= kWindow; ++dx, ++place, out += channels) {
-                        readLinear(image, at + Vec2f{float(dx), float(dy)} * float(level.step), out);
-                        for (std::size_t c = 0; c < channels; ++c) out[c] *= weight[place];
-                    }
-            }
-    });
-    return windows;
-}
-
-std::vector<float> projectAll(const PrincipalAxes& axes, const std::vector<float>& vectors,
+std::vector<float> projectAll(const PrincipalAxes& axes, std::size_t nodes, const VectorOf& vectorOf,
                               const RunContext& ctx) {
-    const std::size_t rows = vectors.size() / axes.length;
-    std::vector<float> out(rows * axes.count);
-    parallelFor(ctx, rows, 1024, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            axes.project(vectors.data() + i * axes.length, out.data() + i * axes.count);
+    std::vector<float> out(nodes * axes.count);
+    parallelFor(ctx, nodes, 1024, [&](std::size_t begin, std::size_t end) {
+        std::vector<float> vector(axes.length);
+        for (std::size_t i = begin; i < end; ++i) {
+            vectorOf(std::int32_t(i), vector.data());
+            axes.project(vector.data(), out.data() + i * axes.count);
+        }
     });
     return out;
 }
 
-// The appearances at the four taps around every node.
-std::vector<float> tapsOf(const SampleLevel& level) {
-    const std::size_t nodes = level.appearance.size() / kAppearance;
-    std::vector<float> taps(nodes * 4 * kAppearance);
-    for (std::size_t i = 0; i < nodes; ++i)
-        for (std::size_t t = 0; t < 4; ++t) {
-            const Vec2f at = level.centre(std::int32_t(i)) + kTaps[t] * float(level.step);
-            std::copy_n(level.appearance.data() + std::size_t(level.node(at)) * kAppearance, kAppearance,
-                        taps.data() + (i * 4 + t) * kAppearance);
+// The 5 x 5 window of a node, the outer places with less weight.
+class Windows {
+public:
+    /// @param image  a texel for each node
+    Windows(const SampleImage& image, const SampleLevel& level)
+        : mImage(image), mWidth(level.width), mStep(float(level.step / double(level.stride))) {
+        for (int dy = -kWindow; dy <= kWindow; ++dy)
+            for (int dx = -kWindow; dx <= kWindow; ++dx)
+                mWeight.push_back(float(exponential(-double(dx * dx + dy * dy) / 8)));
+    }
+
+    std::size_t length() const { return mWeight.size() * std::size_t(mImage.channels); }
+
+    void operator()(std::int32_t node, float* out) const {
+        const Vec2f at{float(node % mWidth) + 0.5f, float(node / mWidth) + 0.5f};
+        std::size_t place = 0;
+        for (int dy = -kWindow; dy <= kWindow; ++dy)
+            for (int dx = -kWindow; dx <= kWindow; ++dx, ++place, out += mImage.channels) {
+                readLinear(mImage, at + Vec2f{float(dx), float(dy)} * mStep, out);
+                for (int c = 0; c < mImage.channels; ++c) out[c] *= mWeight[place];
+            }
+    }
+
+private:
+    const SampleImage& mImage;
+    int mWidth;
+    float mStep;
+    std::vector<float> mWeight;
+};
+
+// Of every node and channel the sixteenth of the values that it belongs to; equal values share one.
+std::vector<std::uint8_t> ranksOf(const SampleImage& image) {
+    const std::size_t nodes = image.texels(), channels = std::size_t(image.channels);
+    const std::vector<float>& values = image.values;
+    std::vector<std::uint8_t> ranks(values.size());
+    std::vector<float> sorted(nodes);
+    for (std::size_t c = 0; c < channels; ++c) {
+        for (std::size_t i = 0; i < nodes; ++i) sorted[i] = values[i * channels + c];
+        std::sort(sorted.begin(), sorted.end());
+        for (std::size_t i = 0; i < nodes; ++i) {
+            const auto below = std::lower_bound(sorted.begin(), sorted.end(), values[i * channels + c]);
+            ranks[i * channels + c] = std::uint8_t(std::size_t(below - sorted.begin()) * kRanks / nodes);
         }
-    return taps;
+    }
+    return ranks;
+}
+
+// The appearances at the four taps around a node.
+void tapsAround(const SampleLevel& level, std::int32_t node, float* out) {
+    for (std::size_t t = 0; t < 4; ++t) {
+        const Vec2f at = level.centre(node) + kTaps[t] * float(level.step);
+        std::copy_n(level.appearance.data() + std::size_t(level.node(at)) * kAppearance, kAppearance,
+                    out + t * kAppearance);
+    }
 }
 
 // Distance between two nodes along the longer axis, around the border where the sample is tileable. [nodes]
@@ -192,18 +207,47 @@ private:
 void smoothAlong(const SampleImage& from, SampleImage& to, const std::vector<float>& kernel, bool columns,
                  const RunContext& ctx) {
     const int reach = int(kernel.size()) - 1, channels = from.channels;
+    const int side = columns ? from.width : from.height;
+    std::vector<int> folded;
+    for (int at = -reach; at < side + reach; ++at) folded.push_back(foldedTexel(at, side, from.tileable));
     parallelFor(ctx, std::size_t(from.height), 8, [&](std::size_t begin, std::size_t end) {
         for (int y = int(begin); y < int(end); ++y)
             for (int x = 0; x < from.width; ++x) {
                 float* out = const_cast<float*>(to.texel(x, y));
                 std::fill_n(out, channels, 0.0f);
                 for (int d = -reach; d <= reach; ++d) {
-                    const float* in = columns ? from.texel(foldedTexel(x + d, from.width, from.tileable), y)
-                                              : from.texel(x, foldedTexel(y + d, from.height, from.tileable));
+                    const int place = folded[std::size_t((columns ? x : y) + d + reach)];
+                    const float* in = columns ? from.texel(place, y) : from.texel(x, place);
                     for (int c = 0; c < channels; ++c) out[c] += kernel[std::size_t(std::abs(d))] * in[c];
                 }
             }
     });
+}
+
+// Means of blocks of `stride` texels; what is left over at the right and above is cut off.
+SampleImage reduced(const SampleImage& image, int stride, int width, int height) {
+    SampleImage out{width, height, image.channels, image.tileable, {}};
+    out.values.assign(out.texels() * std::size_t(image.channels), 0);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            float* sum = const_cast<float*>(out.texel(x, y));
+            int count = 0;
+            for (int j = y * stride; j < std::min((y + 1) * stride, image.height); ++j)
+                for (int i = x * stride; i < std::min((x + 1) * stride, image.width); ++i, ++count)
+                    for (int c = 0; c < image.channels; ++c) sum[c] += image.texel(i, j)[c];
+            for (int c = 0; c < image.channels; ++c) sum[c] /= float(count);
+        }
+    return out;
+}
+
+// The image as sites a step apart see it, a texel for each node: smoothed over 0.4 steps, of which the mean
+// over a node's block is a part. Steps of a texel see it as it is.
+SampleImage seenBy(const SampleLevel& level, const SampleImage& image, const RunContext& ctx) {
+    if (level.step <= 1.3) return image;
+    const double wanted = 0.4 * level.step / double(level.stride);
+    const double had = level.stride > 1 ? 1.0 / 12 : 0;
+    return smoothed(level.stride > 1 ? reduced(image, level.stride, level.width, level.height) : image,
+                    std::sqrt(std::max(0.0, wanted * wanted - had)), ctx);
 }
 
 }  // namespace
@@ -235,14 +279,18 @@ SampleLevel sampleLevel(const SampleImage& image, double step, std::size_t simil
     level.tileable = image.tileable;
     const int nodesInStep = int(std::ceil(step / double(level.stride)));
     if (!image.tileable) level.margin = std::min({nodesInStep, level.width / 4, level.height / 4});
-    // Steps of a texel see the image as it is.
-    const SampleImage seen = smoothed(image, step > 1.3 ? 0.4 * step : 0, ctx);
-    const std::vector<float> windows = windowsOf(seen, level, ctx);
-    const std::size_t length = windows.size() / (std::size_t(level.width) * std::size_t(level.height));
-    level.appearance = projectAll(axesOf(windows, length, kAppearance), windows, ctx);
-    const std::vector<float> taps = tapsOf(level);
-    level.taps = axesOf(taps, 4 * kAppearance, kFeature);
-    level.feature = projectAll(level.taps, taps, ctx);
+    const SampleImage seen = seenBy(level, image, ctx);
+    level.channels = std::size_t(image.channels);
+    level.rank = ranksOf(seen);
+    const std::size_t nodes = std::size_t(level.width) * std::size_t(level.height);
+    const Windows windows(seen, level);
+    level.appearance = projectAll(axesOf(nodes, windows.length(), kAppearance, windows), nodes, windows, ctx);
+    const auto taps = [&level](std::int32_t node, float* out) { tapsAround(level, node, out); };
+    level.taps = axesOf(nodes, 4 * kAppearance, kFeature, taps);
+    level.feature = projectAll(level.taps, nodes, taps, ctx);
+    // The axes are centred, so the mean feature is zero.
+    for (float f : level.feature) level.spread += double(f) * double(f);
+    level.spread /= double(level.feature.size() / kFeature);
     level.similarCount = similar;
     if (similar > 0) SimilarNodes(level, similar).find(ctx);
     return level;

@@ -12,6 +12,8 @@ namespace vdbsynth {
 inline constexpr std::size_t kAppearance = 8;  ///< numbers that describe a texel's window
 inline constexpr std::size_t kFeature = 8;     ///< numbers that describe the four taps around a texel
 
+inline constexpr std::size_t kRanks = 16;  ///< parts of a channel's values, equally many in each
+
 /// Where neighbourhoods are compared: at (+-1, +-1) steps from the middle.
 inline constexpr std::array<Vec2f, 4> kTaps{{{-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
 
@@ -27,7 +29,11 @@ struct SampleLevel {
     bool tileable = false;
     std::vector<float> appearance;  ///< [height x width x kAppearance]
     std::vector<float> feature;     ///< [height x width x kFeature]
-    PrincipalAxes taps;             ///< from four appearances to a feature
+    double spread = 0;              ///< mean squared distance of a feature from the mean of all
+    std::size_t channels = 0;
+    /// [height x width x channels] which sixteenth of the channel's values a node's value is in, by rank.
+    std::vector<std::uint8_t> rank;
+    PrincipalAxes taps;  ///< from four appearances to a feature
     std::size_t similarCount = 0;
     std::vector<std::int32_t> similar;  ///< [height x width x similarCount] nodes with a like feature, far
                                         ///< from the node and each other; -1: none

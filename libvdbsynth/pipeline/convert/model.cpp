@@ -94,7 +94,7 @@ LevelSet loadPoints(const std::string& path, const ModelOptions& options, const 
     PointFile file = readPoints(path, ctx);
     if (file.invalid > 0)
         message(ctx, MessageLevel::Note,
-                path + ": " + std::to_string(file.invalid) + " points without finite coordinates left out");
+                path + ": " + countText(file.invalid, "point") + " without finite coordinates left out");
     scalePoints(file.cloud.points, file.cloud.origin, options.unitScale);
     // Outliers would make the voxels too large.
     PointCloud core = file.cloud;

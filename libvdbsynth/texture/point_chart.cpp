@@ -20,30 +20,29 @@ bool continueChart(const ChartSite& p, const Vec3d& v, ChartEstimate& estimate) 
     return true;
 }
 
-ChartSite meanSite(const ChartEstimate* estimates, std::size_t count) {
-    ChartSite mean;
+ChartSite meanSite(const ChartEstimate* estimates, std::size_t count, const Vec3d& normal) {
+    ChartSite mean{{}, normal, {}};
     double weights = 0;
     for (std::size_t l = 0; l < count; ++l) {
         const ChartSite& site = estimates[l].site;
         const double w = estimates[l].weight;
         weights += w;
         mean.q = {mean.q.x + w * site.q.x, mean.q.y + w * site.q.y};
-        mean.n = mean.n + site.n * w;
         mean.s = mean.s + site.s * w;
     }
     mean.q = {mean.q.x / weights, mean.q.y / weights};
-    // Opposite estimates may cancel: the nearest point's, which has the largest weight, then stands.
-    const Vec3d n = normalized(mean.n);
-    const Vec3d s = mean.s - n * dot(mean.s, n);
-    const double size = length(s);
-    if (!(dot(n, n) > 0.5) || !(size > 1e-9 * weights)) {
+    const auto onSurface = [&](const Vec3d& s) { return s - normal * dot(s, normal); };
+    Vec3d s = onSurface(mean.s);
+    if (!(length(s) > 1e-9 * weights)) {
+        // Opposite estimates cancel: that of the nearest point stands, or any direction.
         const auto heavier = [](const ChartEstimate& a, const ChartEstimate& b) {
             return a.weight < b.weight;
         };
-        const ChartEstimate& nearest = *std::max_element(estimates, estimates + count, heavier);
-        return {mean.q, nearest.site.n, nearest.site.s};
+        s = onSurface(std::max_element(estimates, estimates + count, heavier)->site.s);
+        if (!(length(s) > 1e-9)) s = onSurface(std::abs(normal.x) < 0.7 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0});
     }
-    return {mean.q, n, s * (1 / size)};
+    mean.s = normalized(s);
+    return mean;
 }
 
 double chartDistortion(const ChartEstimate* estimates, std::size_t count, const ChartSite& mean,

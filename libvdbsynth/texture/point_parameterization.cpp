@@ -111,7 +111,8 @@ private:
         std::array<BlendPart, kMostBlendParts> parts;
         float sum = 0;
         for (std::size_t i = 0; i < mUsed; ++i) {
-            const ChartSite mean = meanSite(mPlaces[i].estimates.data(), mPlaces[i].estimates.size());
+            const ChartSite mean =
+                meanSite(mPlaces[i].estimates.data(), mPlaces[i].estimates.size(), siteNormal(mSites, site));
             if (i == 0) mPatches.chart[site] = mean;
             parts[i] = {mPatches.coordinate(mPlaces[i].patch, mean.q, mScale), float(mPlaces[i].weight)};
             sum += parts[i].weight;
@@ -142,9 +143,7 @@ private:
             mPatches.patch[site] = mPatches.patch[mSites.neighbours[k]];
         } else {
             Random random(mContext.seed, mSurface.order[site], kGapDraw);
-            const Vec3d n = normalized(cast<double>(mSites.normal[site]));
-            const Vec3d s = cast<double>(siteTangent(mSurface, site, {}, mContext.seed));
-            mPatches.chart[site] = {{}, n, normalized(s - n * dot(s, n))};
+            mPatches.chart[site] = seedChart(mSites, site, siteTangent(mSurface, site, {}, mContext.seed));
             mPatches.patch[site] = std::int32_t(mPatches.origin.size());
             mPatches.origin.push_back({float(random.uniform(0, double(mSample.width))),
                                        float(random.uniform(0, double(mSample.height)))});

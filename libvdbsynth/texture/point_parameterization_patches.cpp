@@ -57,10 +57,8 @@ private:
     void start(std::uint32_t seed) {
         mNumber = std::int32_t(mResult.origin.size());
         mBox = {};
-        const Vec3d n = cast<double>(mSites.normal[seed]);
-        const Vec3d s = cast<double>(siteTangent(mSurface, seed, mOptions.orientation, mContext.seed));
-        const Vec3d unit = normalized(n);
-        join(seed, {{}, unit, normalized(s - unit * dot(s, unit))});
+        join(seed, seedChart(mSites, seed,
+                             siteTangent(mSurface, seed, mOptions.orientation, mContext.seed)));
     }
 
     void join(std::uint32_t site, const ChartSite& chart) {
@@ -84,7 +82,7 @@ private:
         }
         if (!any) return;
         if (count > 0) {
-            const ChartSite mean = meanSite(mEstimates.data(), count);
+            const ChartSite mean = meanSite(mEstimates.data(), count, siteNormal(mSites, site));
             const ChartBox box = mBox.with(mean.q);
             if (box.right - box.left <= mWidest && box.high - box.low <= mHighest &&
                 chartDistortion(mEstimates.data(), count, mean, mOptions.distortion) <=

@@ -62,6 +62,11 @@ std::vector<Vec3f> siteTangents(const PointSurface& surface, const PointOrientat
     return tangents;
 }
 
+ChartSite seedChart(const SurfaceSites& sites, std::size_t site, const Vec3f& tangent) {
+    const Vec3d n = siteNormal(sites, site), s = cast<double>(tangent);
+    return {{}, n, normalized(s - n * dot(s, n))};
+}
+
 Vec3f surfaceTangent(const PointSurface& surface, std::size_t site, const Vec3d& direction) {
     return tangentNear(surface.sites.normal[site], cast<float>(direction));
 }

@@ -1,5 +1,6 @@
 #pragma once
 #include "libvdbsynth/points/surface_sites.h"
+#include "libvdbsynth/texture/point_chart.h"
 #include "libvdbsynth/texture/surface_texture.h"
 
 #include <cstdint>
@@ -41,6 +42,14 @@ Vec3f siteTangent(const PointSurface& surface, std::size_t site, const PointOrie
 /// @par Repeats same bits for any number of threads
 std::vector<Vec3f> siteTangents(const PointSurface& surface, const PointOrientationOptions& options,
                                 const RunContext& ctx = {});
+
+/// In double, length 1.
+inline Vec3d siteNormal(const SurfaceSites& sites, std::size_t site) {
+    return normalized(cast<double>(sites.normal[site]));
+}
+
+/// The middle of a new patch.
+ChartSite seedChart(const SurfaceSites& sites, std::size_t site, const Vec3f& tangent);
 
 /// A chart's direction on the surface itself, of length 1.
 Vec3f surfaceTangent(const PointSurface& surface, std::size_t site, const Vec3d& direction);

@@ -106,6 +106,9 @@ void requireSample(const SampleImage& sample) {
         throw Error(ErrorCode::EmptyInput, "the sample has no texels");
     if (sample.values.size() != sample.texels() * std::size_t(sample.channels))
         throw Error(ErrorCode::ShapeMismatch, "the sample's values are not as many as its texels");
+    const auto finite = [](float v) { return std::isfinite(v); };
+    if (!std::all_of(sample.values.begin(), sample.values.end(), finite))
+        throw Error(ErrorCode::Unusable, "the sample has values that are not finite");
 }
 
 RandomOrder::RandomOrder(std::size_t count, std::uint64_t seed, std::uint32_t purpose)

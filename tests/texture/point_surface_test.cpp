@@ -73,5 +73,6 @@ TEST_CASE("RandomOrder: every number once") {
 TEST_CASE("requireSample: refuses what is no image") {
     CHECK_THROWS_AS(requireSample({}), Error);
     CHECK_THROWS_AS(requireSample({2, 2, 1, false, {1, 2, 3}}), Error);
+    CHECK_THROWS_AS(requireSample({1, 1, 1, false, {NAN}}), Error);
     CHECK_NOTHROW(requireSample({1, 1, 1, false, {0.5f}}));
 }

@@ -20,12 +20,12 @@ class Windows {
 public:
     Windows(const SampleImage& sample, int apart)
         : mSample(sample), mApart(apart), mReach((kSide - 1) * apart) {
-        const std::size_t places =
-            std::size_t(std::max(0, sample.width - mReach)) * std::size_t(std::max(0, sample.height - mReach));
+        const std::size_t places = std::size_t(std::max(0, sample.width - mReach)) *
+                                   std::size_t(std::max(0, sample.height - mReach));
         const std::size_t step = std::max<std::size_t>(1, (places + kMost - 1) / kMost);
         for (std::size_t i = 0; i < places; i += step)
-            mCorner.push_back({int(i % std::size_t(sample.width - mReach)),
-                               int(i / std::size_t(sample.width - mReach))});
+            mCorner.push_back(
+                {int(i % std::size_t(sample.width - mReach)), int(i / std::size_t(sample.width - mReach))});
         for (const Corner& corner : mCorner) read(corner, mValues);
     }
 

@@ -25,8 +25,8 @@ struct ChartEstimate {
 
 /// Weights of the distortion [zhang2004, Eq. 2 to 4].
 struct ChartDistortion {
-    double w1 = 1, w2 = 1;  ///< mean against maximum, of positions and of orientations, at least 0
-    double w3 = 3, w4 = 2;  ///< orientations and positions, at least 0
+    double w1 = 1, w2 = 1;   ///< mean against maximum, of positions and of orientations, at least 0
+    double w3 = 3, w4 = 2;   ///< orientations and positions, at least 0
     double threshold = 1.6;  ///< a point above it becomes a gap, at least 0
 };
 
@@ -40,8 +40,8 @@ struct ChartDistortion {
 bool continueChart(const ChartSite& p, const Vec3d& v, ChartEstimate& estimate);
 
 /// The mean of estimates by their weights, on the surface: n is the point's normal, s the direction of the
-/// mean of s, made perpendicular to n. Deviation: the paper takes the mean of n as well, which lags behind the
-/// surface, as each estimate's n is that of half the way; a cylinder's charts are then longer by 0.6 % at
+/// mean of s, made perpendicular to n. Deviation: the paper takes the mean of n as well, which lags behind
+/// the surface, as each estimate's n is that of half the way; a cylinder's charts are then longer by 0.6 % at
 /// s/r = 0.03, of which this leaves 0.04 %.
 /// @param count   at least 1
 /// @param normal  the surface's at the point, length 1

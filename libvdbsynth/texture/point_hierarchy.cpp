@@ -13,7 +13,9 @@ constexpr std::uint32_t kFree = SiteQueue::kNone;
 class Merger {
 public:
     Merger(const SurfaceSites& sites, const RunContext& ctx)
-        : mSites(sites), mQueue(sites.size()), mStage(ctx, "clusters", std::max<std::size_t>(1, sites.size())) {
+        : mSites(sites),
+          mQueue(sites.size()),
+          mStage(ctx, "clusters", std::max<std::size_t>(1, sites.size())) {
         mCoarser.parent.assign(sites.size(), kFree);
     }
 

@@ -71,9 +71,8 @@ SampleImage halved(const SampleImage& image) {
             const int right = std::min(2 * x + 1, image.width - 1);
             const int upper = std::min(2 * y + 1, image.height - 1);
             for (int c = 0; c < image.channels; ++c)
-                half.values.push_back(0.25f *
-                                      (image.texel(2 * x, 2 * y)[c] + image.texel(right, 2 * y)[c] +
-                                       image.texel(2 * x, upper)[c] + image.texel(right, upper)[c]));
+                half.values.push_back(0.25f * (image.texel(2 * x, 2 * y)[c] + image.texel(right, 2 * y)[c] +
+                                               image.texel(2 * x, upper)[c] + image.texel(right, upper)[c]));
         }
     return half;
 }

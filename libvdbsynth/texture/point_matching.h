@@ -23,20 +23,22 @@ struct PointMatchingResult {
     double tried = 0;  ///< mean number of texels that a point's neighbourhood was compared with
 };
 
-/// Colours points one after another by their neighbourhoods, the second of the paper's methods [zhang2004, 4].
-/// A point's neighbourhood are those of its k neighbours that have a colour, at their places on its tangent
-/// plane (flattened in coordinates/site_chart.h). It is laid on every texel of the sample, which is read
-/// between texels at eighths (the nearest texel of one with 8 x 8 as many), and the texel with the smallest
-/// sum of squared differences gives the colour; ties go to the lowest texel number. Texels where a
-/// neighbourhood would reach beyond the sample are left out, unless it is tileable or no other is left.
+/// Colours points one after another by their neighbourhoods, the second of the paper's methods [zhang2004,
+/// 4]. A point's neighbourhood are those of its k neighbours that have a colour, at their places on its
+/// tangent plane (flattened in coordinates/site_chart.h). It is laid on every texel of the sample, which is
+/// read between texels at eighths (the nearest texel of one with 8 x 8 as many), and the texel with the
+/// smallest sum of squared differences gives the colour; ties go to the lowest texel number. Differences are
+/// summed along the principal axes of the sample's colours, the same sum, the longest axis first, so that
+/// most texels are given up early. Texels where a neighbourhood would reach beyond the sample are left out,
+/// unless it is tileable or no other is left.
 ///
 /// Points with the most coloured neighbours come first (site_queue.h). Decision: up to 16 of them at once
 /// where none is a neighbour of another and none has less than 3/4 of the first one's coloured neighbours, so
 /// that threads have work; the coherent variant goes one by one.
 ///
 /// With more levels the coarsest, of clusters of four (point_hierarchy.h), begins with random texels; each
-/// finer one also compares the coarser points over the neighbourhood with the coarser sample, whose texels are
-/// means of four. Neighbours over 2 sqrt(k) spacings, or over half the sample, away are left out.
+/// finer one also compares the coarser points over the neighbourhood with the coarser sample, whose texels
+/// are means of four. Neighbours over 2 sqrt(k) spacings, or over half the sample, away are left out.
 /// @throw Error InvalidOption (a field out of its range), EmptyInput, ShapeMismatch, Unusable (as
 /// requireTarget and requireSample), Cancelled
 /// @par Cost    O(points * texels * k); O(points * k^2) if coherent. Memory: 64 times the sample's where that
@@ -64,8 +66,8 @@ double matchLevel(MatchLevel& level, const SampleImage& sample, const MatchLevel
                   const SampleImage* coarserSample, const PointMatchingOptions& options,
                   const RunContext& ctx = {});
 
-/// The next coarser level of sites: clusters of four (point_hierarchy.h), coloured where all members are, with
-/// the mean of their values and the first one's coordinate. Sets the finer one's parents.
+/// The next coarser level of sites: clusters of four (point_hierarchy.h), coloured where all members are,
+/// with the mean of their values and the first one's coordinate. Sets the finer one's parents.
 MatchLevel coarserLevel(MatchLevel& finer, int neighbours, const RunContext& ctx = {});
 
 /// The levels above `levels[0]` added, up to `count`, and all coloured from the coarsest on.

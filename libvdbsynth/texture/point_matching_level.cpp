@@ -1,6 +1,7 @@
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/base/random.h"
 #include "libvdbsynth/coordinates/site_chart.h"
+#include "libvdbsynth/math/pca.h"
 #include "libvdbsynth/texture/point_matching_steps.h"
 #include "libvdbsynth/texture/site_queue.h"
 
@@ -27,14 +28,21 @@ SampleImage enlarged(const SampleImage& coarser, const SampleImage& finer) {
     return out;
 }
 
+// A coloured neighbour: its offset [eighths of texels] and colour along the axes.
+struct Neighbour {
+    const MatchPlanes* planes;
+    int x8, y8;
+    const float* values;
+};
+
 // What one site's match needs and gives; reused.
 struct Slot {
     std::uint32_t site = 0;
+    std::vector<Neighbour> neighbours;
     std::vector<MatchTerm> terms;
     std::vector<std::uint32_t> parents;
-    std::vector<Vec2f> candidates;  // continuations of coloured neighbours
-    std::vector<std::vector<float>> rooms;
-    std::size_t room = 0;
+    std::vector<Vec2f> candidates;          // continuations of coloured neighbours
+    std::vector<std::vector<float>> rooms;  // of planes that are computed as it goes
     MatchWindow window{};
     MatchBest best;
     std::size_t compared = 0;
@@ -47,6 +55,7 @@ public:
         : mLevel(level),
           mSites(level.sites),
           mSample(sample),
+          mChannels(std::size_t(sample.channels)),
           mCoarser(coarser),
           mOptions(options),
           mContext(ctx),
@@ -59,9 +68,14 @@ public:
         const int margin = int(mReach) + 2;
         const double bytes = MatchPlanes::bytes(sample, margin) * (coarser ? 2 : 1);
         const bool all = bytes <= kMostBytes && (ctx.maxMemory == 0 || bytes < 0.5 * double(ctx.maxMemory));
-        mPlanes = std::make_unique<MatchPlanes>(sample, margin, all);
-        if (coarser)
-            mCoarserPlanes = std::make_unique<MatchPlanes>(enlarged(*coarserSample, sample), margin, all);
+        mAxes = principalAxes(sample.values, mChannels, mChannels, 1.0 + 1e-9);
+        mPlanes = std::make_unique<MatchPlanes>(rotated(sample), margin, all);
+        if (coarser) {
+            mCoarserPlanes =
+                std::make_unique<MatchPlanes>(rotated(enlarged(*coarserSample, sample)), margin, all);
+            mCoarserValues = rotated(coarser->values);
+        }
+        mValues = rotated(level.values);
     }
 
     double run() {
@@ -92,6 +106,17 @@ public:
     }
 
 private:
+    std::vector<float> rotated(const std::vector<float>& values) const {
+        std::vector<float> out(values.size());
+        for (std::size_t i = 0; i < values.size(); i += mChannels)
+            mAxes.project(values.data() + i, out.data() + i);
+        return out;
+    }
+    SampleImage rotated(SampleImage image) const {
+        image.values = rotated(image.values);
+        return image;
+    }
+
     void raiseAround(std::uint32_t site) {
         for (std::uint32_t k = mSites.begin[site]; k < mSites.begin[site + 1]; ++k)
             if (!mLevel.coloured[mSites.neighbours[k]]) mQueue.raise(mSites.neighbours[k]);
@@ -174,10 +199,9 @@ private:
 
     // The terms of a site's neighbourhood and the texels on which it fits.
     void gather(Slot& slot) const {
-        slot.terms.clear();
+        slot.neighbours.clear();
         slot.candidates.clear();
         slot.parents.clear();
-        slot.room = 0;
         slot.window = {0, mSample.width, 0, mSample.height};
         const std::uint32_t i = slot.site;
         const SiteFrame frame = siteFrame(mSites.normal[i], mLevel.tangent[i]);
@@ -191,13 +215,25 @@ private:
             if (!(length(by) <= mReach)) continue;
             if (mCoarser) slot.parents.push_back(mLevel.parent[j]);
             if (!mLevel.coloured[j]) continue;
-            addTerms(slot, *mPlanes, by, mLevel.values, j);
+            addNeighbour(slot, *mPlanes, by, mValues.data() + j * mChannels);
             slot.candidates.push_back(mLevel.coordinate[j] - by);
         }
         gatherCoarser(slot, offsetTo);
+        makeTerms(slot);
         const MatchWindow& w = slot.window;
         if (mSample.tileable || w.x0 >= w.x1 || w.y0 >= w.y1)
             slot.window = {0, mSample.width, 0, mSample.height};
+    }
+
+    // The first component of all neighbours first: it tells most texels apart.
+    void makeTerms(Slot& slot) const {
+        slot.terms.clear();
+        std::size_t room = 0;
+        for (std::size_t c = 0; c < mChannels; ++c)
+            for (const Neighbour& n : slot.neighbours) {
+                if (room == slot.rooms.size()) slot.rooms.emplace_back();
+                slot.terms.push_back({n.planes->plane(n.x8, n.y8, int(c), slot.rooms[room++]), n.values[c]});
+            }
     }
 
     template <typename OffsetTo>
@@ -207,20 +243,14 @@ private:
         for (const std::uint32_t p : slot.parents) {
             const Vec2f by = offsetTo(mCoarser->sites.point[p]);
             if (!(length(by) <= mReach)) continue;
-            addTerms(slot, *mCoarserPlanes, by, mCoarser->values, p);
+            addNeighbour(slot, *mCoarserPlanes, by, mCoarserValues.data() + p * mChannels);
             slot.candidates.push_back(mCoarser->coordinate[p] * 2 - by);
         }
     }
 
-    void addTerms(Slot& slot, const MatchPlanes& planes, const Vec2f& by, const std::vector<float>& values,
-                  std::uint32_t number) const {
+    void addNeighbour(Slot& slot, const MatchPlanes& planes, const Vec2f& by, const float* values) const {
         const int x8 = int(std::floor(by.x * kPhases + 0.5f)), y8 = int(std::floor(by.y * kPhases + 0.5f));
-        for (int c = 0; c < mSample.channels; ++c) {
-            if (slot.room == slot.rooms.size()) slot.rooms.emplace_back();
-            const float* plane = planes.plane(x8, y8, c, slot.rooms[slot.room++]);
-            slot.terms.push_back(
-                {plane, values[std::size_t(number) * std::size_t(mSample.channels) + std::size_t(c)]});
-        }
+        slot.neighbours.push_back({&planes, x8, y8, values});
         // From the first to the last texel whose place moved by the offset lies between texels' centres.
         MatchWindow& w = slot.window;
         w.x0 = std::max(w.x0, (-x8 + kPhases - 1) >> 3);
@@ -232,9 +262,10 @@ private:
     void colour(const Slot& slot) {
         const int x = slot.best.texel % mSample.width, y = slot.best.texel / mSample.width;
         mLevel.coordinate[slot.site] = {float(x) + 0.5f, float(y) + 0.5f};
-        std::copy_n(mSample.texel(x, y), mSample.channels,
-                    mLevel.values.begin() +
-                        std::ptrdiff_t(std::size_t(slot.site) * std::size_t(mSample.channels)));
+        std::copy_n(
+            mSample.texel(x, y), mSample.channels,
+            mLevel.values.begin() + std::ptrdiff_t(std::size_t(slot.site) * std::size_t(mSample.channels)));
+        mAxes.project(mSample.texel(x, y), mValues.data() + std::size_t(slot.site) * mChannels);
         mLevel.coloured[slot.site] = 1;
         mCompared += double(slot.compared);
         raiseAround(slot.site);
@@ -243,6 +274,7 @@ private:
     MatchLevel& mLevel;
     const SurfaceSites& mSites;
     const SampleImage& mSample;
+    std::size_t mChannels;
     const MatchLevel* mCoarser;
     const PointMatchingOptions& mOptions;
     const RunContext& mContext;
@@ -252,6 +284,8 @@ private:
     std::vector<SiteQueue::Entry> mAside;
     std::uint64_t mBatch = 0;
     float mReach = 1;
+    PrincipalAxes mAxes;
+    std::vector<float> mValues, mCoarserValues;  // along the axes
     std::unique_ptr<MatchPlanes> mPlanes, mCoarserPlanes;
     double mCompared = 0;
 };

@@ -11,7 +11,7 @@ namespace {
 __attribute__((target_clones("avx2", "default"))) bool addTerms(const MatchTerm* terms, std::size_t count,
                                                                 std::ptrdiff_t at, float most,
                                                                 float* __restrict costs) {
-    constexpr std::size_t kBetween = 12;  // terms between looks at the best
+    constexpr std::size_t kBetween = 6;  // terms between looks at the best
     float sum[kBlock] = {};
     for (std::size_t first = 0; first < count; first += kBetween) {
         const std::size_t last = std::min(count, first + kBetween);
@@ -75,7 +75,8 @@ const float* MatchPlanes::plane(int x8, int y8, int channel, std::vector<float>&
     const std::ptrdiff_t x = (x8 - phaseX) / kPhases + mMargin, y = (y8 - phaseY) / kPhases + mMargin;
     const float* values;
     if (mAll) {
-        values = mPhases.data() + std::size_t((phaseY * kPhases + phaseX) * mChannels + channel) * planeSize();
+        values =
+            mPhases.data() + std::size_t((phaseY * kPhases + phaseX) * mChannels + channel) * planeSize();
     } else {
         room.resize(planeSize());
         compute(phaseX, phaseY, channel, room.data());

@@ -183,9 +183,8 @@ bool mixesByHistogram(PointBlend blend, const SampleImage& sample, const RunCont
     const bool suits = loss <= kBlendSuits;
     message(ctx, MessageLevel::Detail,
             "mixed windows of the sample are " + roundedText(loss, 3) +
-                " times as far from its own as those are from each other (at most " +
-                exactText(kBlendSuits) + " for mixing by histogram): gaps are mixed " +
-                (suits ? "by histogram" : "by weight"));
+                " times as far from its own as those are from each other (at most " + exactText(kBlendSuits) +
+                " for mixing by histogram): gaps are mixed " + (suits ? "by histogram" : "by weight"));
     return suits;
 }
 

@@ -23,8 +23,8 @@ struct ChartBox {
 
 class Grower {
 public:
-    Grower(const PointSurface& surface, const SampleImage& sample, const PointParameterizationOptions& options,
-           const RunContext& ctx)
+    Grower(const PointSurface& surface, const SampleImage& sample,
+           const PointParameterizationOptions& options, const RunContext& ctx)
         : mSurface(surface),
           mSites(surface.sites),
           mSample(sample),
@@ -57,8 +57,7 @@ private:
     void start(std::uint32_t seed) {
         mNumber = std::int32_t(mResult.origin.size());
         mBox = {};
-        join(seed, seedChart(mSites, seed,
-                             siteTangent(mSurface, seed, mOptions.orientation, mContext.seed)));
+        join(seed, seedChart(mSites, seed, siteTangent(mSurface, seed, mOptions.orientation, mContext.seed)));
     }
 
     void join(std::uint32_t site, const ChartSite& chart) {

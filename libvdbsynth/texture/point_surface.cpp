@@ -47,8 +47,7 @@ Vec3f siteTangent(const PointSurface& surface, std::size_t site, const PointOrie
     if (!surface.direction.empty() && dot(surface.direction[site], surface.direction[site]) > 0)
         return tangentNear(normal, surface.direction[site]);
     if (options.orientation == PointOrientation::Up) return cross(tangentNear(normal, options.up), normal);
-    const double angle =
-        Random(seed, surface.order[site], kOrientationDraw).uniform(0, 2 * kPi);
+    const double angle = Random(seed, surface.order[site], kOrientationDraw).uniform(0, 2 * kPi);
     const Vec3f s = tangentNear(normal, {1, 0, 0});
     return s * float(cosine(angle)) + cross(normal, s) * float(sine(angle));
 }

@@ -63,8 +63,8 @@ TexturedSites inTargetOrder(const TexturedSites& sites, const std::vector<std::u
 /// All places of a result of `sites` sites, without colour.
 TexturedSites uncoloured(std::size_t sites, int channels);
 
-/// @throw Error EmptyInput (no texels or channels), ShapeMismatch (not as many values as it says), Unusable (values that
-/// are not finite)
+/// @throw Error EmptyInput (no texels or channels), ShapeMismatch (not as many values as it says), Unusable
+/// (values that are not finite)
 void requireSample(const SampleImage& sample);
 
 /// The numbers 0 to count - 1, each once, drawn by (seed, purpose).

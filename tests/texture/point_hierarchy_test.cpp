@@ -43,8 +43,8 @@ TEST_CASE("mergedByFours: nearly all clusters have four members, and those are n
     CHECK(double(coarser.point.size()) < 0.26 * 20000);
     double farthest = 0;
     for (std::size_t i = 0; i < coarser.parent.size(); ++i)
-        farthest = std::max(farthest,
-                            double(length(surface.sites.point[i] - coarser.point[coarser.parent[i]])));
+        farthest =
+            std::max(farthest, double(length(surface.sites.point[i] - coarser.point[coarser.parent[i]])));
     CHECK(farthest < 6 * surface.spacing);
 }
 

@@ -50,14 +50,13 @@ int bestTexel(const MatchLevel& level, std::size_t i, const SampleImage& sample)
                 flattened(frame, level.sites.point[j] - level.sites.point[i]) * float(1 / level.texel);
             const float x = float(t % sample.width) + std::floor(by.x * 8 + 0.5f) / 8;
             const float y = float(t / sample.width) + std::floor(by.y * 8 + 0.5f) / 8;
-            if (!sample.tileable && (x < 0 || y < 0 || x > float(sample.width - 1) ||
-                                     y > float(sample.height - 1)))
+            if (!sample.tileable &&
+                (x < 0 || y < 0 || x > float(sample.width - 1) || y > float(sample.height - 1)))
                 inside = false;
             float read[4];
             readLinear(sample, {x + 0.5f, y + 0.5f}, read);
             for (int c = 0; c < sample.channels; ++c) {
-                const float d =
-                    read[c] - level.values[j * std::size_t(sample.channels) + std::size_t(c)];
+                const float d = read[c] - level.values[j * std::size_t(sample.channels) + std::size_t(c)];
                 cost += d * d;
             }
         }
@@ -119,8 +118,7 @@ void checkContinues(bool coherent) {
     options.coherent = coherent;
     const double compared = matchLevel(level, sample, nullptr, nullptr, options);
     if (coherent) CHECK(compared / 1600 < 25);
-    for (std::size_t i = 0; i < level.sites.size(); ++i)
-        REQUIRE(level.values[3 * i + 1] == texelOf(i)[1]);
+    for (std::size_t i = 0; i < level.sites.size(); ++i) REQUIRE(level.values[3 * i + 1] == texelOf(i)[1]);
 }
 
 }  // namespace
@@ -200,7 +198,9 @@ TEST_CASE("halved: means of two by two, odd sides rounded up") {
 
 TEST_CASE("coarserLevel: coloured where all members are, with their mean") {
     MatchLevel level = levelOf({{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4.5f, 0, 0}},
-                                std::vector<Vec3f>(5, {0, 0, 1}), {}, {}},
+                                std::vector<Vec3f>(5, {0, 0, 1}),
+                                {},
+                                {}},
                                4, 1);
     level.values = {1, 2, 3, 4, 7};
     level.coloured = {1, 1, 1, 1, 0};
@@ -226,7 +226,8 @@ TEST_CASE("matchPoints: degenerate targets and samples are coloured") {
     targets.push_back({{{0, 0, 0}, {1, 0, 0}}, {{0, 0, 1}, {0, 0, -1}}, {}, {}});
     targets.push_back(test::targetOf(test::spiralSphere(200, 1)));
     for (const TextureTarget& target : targets)
-        for (const SampleImage& sample : {SampleImage{1, 1, 1, false, {0.3f}}, test::noiseSample(3, 1, false)})
+        for (const SampleImage& sample :
+             {SampleImage{1, 1, 1, false, {0.3f}}, test::noiseSample(3, 1, false)})
             for (const int levels : {1, 4}) {
                 PointMatchingOptions options;
                 options.levels = levels;

@@ -85,8 +85,7 @@ TEST_CASE("parameterizePoints: a plane of 10^5 random points is moved rigidly, i
     for (const Vec3f& p : plane.point) flat.push_back(cast<double>(p) * (1 / result.spacing));
     CHECK(rigidError(result, flat) < 1e-5);
     // +v is up, (0, 1, 0); so +u is (1, 0, 0).
-    for (std::size_t i = 0; i < 1000; ++i)
-        REQUIRE(length(result.sites.tangent[i] - Vec3f{1, 0, 0}) < 1e-5f);
+    for (std::size_t i = 0; i < 1000; ++i) REQUIRE(length(result.sites.tangent[i] - Vec3f{1, 0, 0}) < 1e-5f);
     const Vec2f a = result.sites.coordinate[5], b = result.sites.coordinate[7];
     CHECK(double(b.x - a.x) == Approx(flat[7].x - flat[5].x).margin(1e-3));
     CHECK(double(b.y - a.y) == Approx(flat[7].y - flat[5].y).margin(1e-3));
@@ -125,8 +124,8 @@ TEST_CASE("parameterizePoints: a cone without its apex is unrolled") {
             Random random(2, cone.point.size());
             const double at = r + step * random.uniform(-0.35, 0.35);
             const double angle = a + step / (r * half) * random.uniform(-0.35, 0.35);
-            cone.point.push_back(cast<float>(
-                Vec3d{at * half * std::cos(angle), at * half * std::sin(angle), -at * half}));
+            cone.point.push_back(
+                cast<float>(Vec3d{at * half * std::cos(angle), at * half * std::sin(angle), -at * half}));
             cone.normal.push_back(cast<float>(Vec3d{half * std::cos(angle), half * std::sin(angle), half}));
             unrolled.push_back({at * std::cos(angle * half), at * std::sin(angle * half), 0});
         }
@@ -138,7 +137,8 @@ TEST_CASE("parameterizePoints: a cone without its apex is unrolled") {
 }
 
 TEST_CASE("parameterizePoints: a cap of a ball has the area of the geodesic chart") {
-    // Around its seed a chart is the geodesic one: at an angle t, lengths across are sin(t)/t of the flat ones.
+    // Around its seed a chart is the geodesic one: at an angle t, lengths across are sin(t)/t of the flat
+    // ones.
     test::PointShape cap;
     const test::PointShape ball = test::spiralSphere(200000, 1);
     for (std::size_t i = 0; i < ball.point.size(); ++i)
@@ -224,7 +224,7 @@ TEST_CASE("parameterizePoints: degenerate targets and samples are coloured") {
     targets.push_back({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, up, {}, {}});
     targets.push_back({{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, up, {}, {}});
     targets.push_back({{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, up, {}, {}});
-    targets.push_back({{{0, 0, 0}, {0, 0, 1}, {0, 0, 2}}, up, {}, {}});       // along the normal
+    targets.push_back({{{0, 0, 0}, {0, 0, 1}, {0, 0, 2}}, up, {}, {}});            // along the normal
     targets.push_back({{{0, 0, 0}, {1, 0, 0}}, {{0, 0, 1}, {0, 0, -1}}, {}, {}});  // no neighbours
     targets.push_back(test::targetOf(test::spiralSphere(500, 1)));
     for (const TextureTarget& target : targets)
@@ -265,7 +265,7 @@ TEST_CASE("parameterizePoints: bad arguments, cancel, threads") {
     RunContext other;
     other.seed = 5;
     CHECK(parameterizePoints(target, sample, {}, other).patch != one.patch);
-    const auto thrown =
-        test::thrownWhenCancelled([&](const RunContext& ctx) { parameterizePoints(target, sample, {}, ctx); });
+    const auto thrown = test::thrownWhenCancelled(
+        [&](const RunContext& ctx) { parameterizePoints(target, sample, {}, ctx); });
     CHECK(thrown.code == int(ErrorCode::Cancelled));
 }

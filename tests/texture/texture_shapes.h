@@ -19,8 +19,8 @@ inline PointShape rolledSheet(double length, double angle, double step, std::uin
         for (double y = 0; y < angle; y += step) {
             Random random(seed, shape.point.size());
             const double a = y + step * random.uniform(-0.35, 0.35);
-            shape.point.push_back({float(x + step * random.uniform(-0.35, 0.35)), float(std::sin(a)),
-                                   float(std::cos(a))});
+            shape.point.push_back(
+                {float(x + step * random.uniform(-0.35, 0.35)), float(std::sin(a)), float(std::cos(a))});
             shape.normal.push_back({0, float(std::sin(a)), float(std::cos(a))});
         }
     return shape;

@@ -40,15 +40,18 @@ private:
 double normalQuantile(double share);
 
 /// How much of the sample's structure mixing destroys, measured on the flat sample: windows of 9 x 9 places,
-/// a texel and 3 texels apart, are read from an even mix of two random places, and from the sample; the
-/// number is the mean distance of a mixed window to the nearest window of the sample, over that of a window
-/// of the sample to the nearest that does not overlap it, the larger of the two sizes. 1: mixed windows look
-/// like the sample's; ghosts of bricks or petals have nothing like them there.
+/// a texel and 3 texels apart, are read from an even mix of two random places, and from the first of them;
+/// the number is the mean distance of a mixed window to the nearest window of the sample that overlaps
+/// neither place, over that of the unmixed one, the larger of the two sizes. 1: mixed windows look like the
+/// sample's; ghosts of bricks or petals have nothing like them there. Measured: noise 1.00, sand 0.99,
+/// bark 1.01, metal 1.01; gravel 1.04, weave 1.06, stones with joints 1.09, flowers 1.12, a brick wall 2.1,
+/// knurling 8.9.
 /// @return 1 for a sample too small to tell, at least 0
-/// @par Cost   about 0.1 s   @par Repeats same bits for any number of threads
+/// @throw Error EmptyInput, ShapeMismatch, Unusable (as requireSample), Cancelled
+/// @par Cost   about 0.2 s   @par Repeats same bits for any number of threads
 double blendLoss(const SampleImage& sample, const RunContext& ctx = {});
 
 /// A sample with at most this blendLoss is mixed by HistogramBlend unless told otherwise.
-inline constexpr double kBlendSuits = 1.25;
+inline constexpr double kBlendSuits = 1.02;
 
 }  // namespace vdbsynth

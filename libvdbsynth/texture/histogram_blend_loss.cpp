@@ -14,6 +14,11 @@ constexpr int kSide = 9;             // [places] of a window
 constexpr std::size_t kTried = 256;  // windows
 constexpr std::size_t kMost = 4096;  // windows of the sample that each is compared with
 constexpr std::uint32_t kDraw = 0x7a02;
+constexpr double kLost = 1000;  // where a mix has nothing like it though all of the sample has
+
+struct Corner {
+    int x, y;
+};
 
 // Windows of a sample at places `apart` texels from each other.
 class Windows {
@@ -36,42 +41,44 @@ public:
     std::size_t count() const { return mCorner.size(); }
     const float* window(std::size_t i) const { return mValues.data() + i * length(); }
 
-    std::vector<float> mixed(const HistogramBlend& blend, Random& random) const {
-        BlendPart parts[2];
-        for (BlendPart& part : parts) {
-            part.at = {float(random.below(std::uint32_t(mSample.width - mReach))) + 0.5f,
-                       float(random.below(std::uint32_t(mSample.height - mReach))) + 0.5f};
-            part.weight = 0.5f;
-        }
+    Corner draw(Random& random) const {
+        const std::uint32_t x = random.below(std::uint32_t(mSample.width - mReach));
+        return {int(x), int(random.below(std::uint32_t(mSample.height - mReach)))};
+    }
+
+    std::vector<float> at(const Corner& corner) const {
+        std::vector<float> out;
+        read(corner, out);
+        return out;
+    }
+
+    std::vector<float> mixed(const HistogramBlend& blend, const Corner& a, const Corner& b) const {
         std::vector<float> out(length());
         for (int y = 0; y < kSide; ++y)
             for (int x = 0; x < kSide; ++x) {
-                const Vec2f by{float(x * mApart), float(y * mApart)};
-                const BlendPart moved[2] = {{parts[0].at + by, 0.5f}, {parts[1].at + by, 0.5f}};
-                blend.mix(moved, 2, out.data() + (y * kSide + x) * mSample.channels);
+                const Vec2f by{float(x * mApart) + 0.5f, float(y * mApart) + 0.5f};
+                const BlendPart parts[2] = {{Vec2f{float(a.x), float(a.y)} + by, 0.5f},
+                                            {Vec2f{float(b.x), float(b.y)} + by, 0.5f}};
+                blend.mix(parts, 2, out.data() + (y * kSide + x) * mSample.channels);
             }
         return out;
     }
 
-    // The distance to the nearest window, of those that do not overlap window `except`.
-    double nearest(const float* values, std::size_t except) const {
+    // The distance to the nearest window that overlaps neither of two; negative if there is none.
+    double nearest(const std::vector<float>& values, const Corner& a, const Corner& b) const {
         float best = std::numeric_limits<float>::infinity();
         for (std::size_t i = 0; i < count(); ++i) {
-            if (except < count() && overlap(mCorner[i], mCorner[except])) continue;
+            if (overlap(mCorner[i], a) || overlap(mCorner[i], b)) continue;
             const float* other = window(i);
             float sum = 0;
             for (std::size_t k = 0; k < length() && sum < best; ++k)
                 sum += (values[k] - other[k]) * (values[k] - other[k]);
             best = std::min(best, sum);
         }
-        return std::isfinite(best) ? std::sqrt(double(best)) : 0;
+        return std::isfinite(best) ? std::sqrt(double(best)) : -1;
     }
 
 private:
-    struct Corner {
-        int x, y;
-    };
-
     void read(const Corner& corner, std::vector<float>& out) const {
         for (int y = 0; y < kSide; ++y)
             for (int x = 0; x < kSide; ++x) {
@@ -97,17 +104,18 @@ double lossAt(const SampleImage& sample, const HistogramBlend& blend, int apart,
     parallelFor(ctx, kTried, 8, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             Random random(0, i, kDraw);
-            const std::size_t number = random.below(std::uint32_t(windows.count()));
-            own[i] = windows.nearest(windows.window(number), number);
-            mixed[i] = windows.nearest(windows.mixed(blend, random).data(), windows.count());
+            const Corner a = windows.draw(random), b = windows.draw(random);
+            own[i] = windows.nearest(windows.at(a), a, b);
+            mixed[i] = windows.nearest(windows.mixed(blend, a, b), a, b);
         }
     });
     double ofMixed = 0, ofOwn = 0;
     for (std::size_t i = 0; i < kTried; ++i) {
+        if (own[i] < 0) continue;
         ofMixed += mixed[i];
         ofOwn += own[i];
     }
-    return ofOwn > 0 ? ofMixed / ofOwn : ofMixed > 0 ? 1e3 : 1;
+    return ofOwn > 0 ? ofMixed / ofOwn : ofMixed > 0 ? kLost : 1;
 }
 
 }  // namespace

@@ -41,8 +41,7 @@ PointHybridResult texturePointsHybrid(const TextureTarget& target, const SampleI
                                       const PointHybridOptions& options = {}, const RunContext& ctx = {});
 
 /// Size of the sample's features [texels], 1..side/2: twice the first distance at which the correlation
-/// of texels, the mean along both axes over the channels by variance, falls below 0.1 and stays below for
-/// as long again.
+/// of texels, the mean along both axes over the channels by variance, falls below 0.1.
 double featureSize(const SampleImage& sample);
 
 /// Lower left corner and size of a window of the sample.

@@ -51,12 +51,11 @@ double featureSize(const SampleImage& sample) {
         variance += moments.back().deviation * moments.back().deviation;
     }
     if (!(variance > 0)) return 1;
-    int first = 1;  // the first distance since which nothing is correlated
-    for (int lag = 1; lag <= most / 2; ++lag) {
+    int first = 1;  // the first distance at which texels are not correlated
+    for (; first < most / 2; ++first) {
         const double along =
-            0.5 * (covariance(sample, moments, lag, 0) + covariance(sample, moments, 0, lag));
-        if (along > kUncorrelated * variance) first = lag + 1;
-        if (lag >= 2 * first) break;
+            0.5 * (covariance(sample, moments, first, 0) + covariance(sample, moments, 0, first));
+        if (along < kUncorrelated * variance) break;
     }
     return std::min(double(most), 2.0 * double(first));
 }

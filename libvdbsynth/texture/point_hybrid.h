@@ -35,13 +35,14 @@ struct PointHybridResult {
 /// what is matched stands as the patches beside it do. With more levels a coarse point counts as coloured
 /// only if all its members are; the others are random on the coarsest level.
 /// @throw Error InvalidOption (a field out of its range), EmptyInput, ShapeMismatch, Unusable (as
-/// requireTarget and requireSample), Cancelled
+/// requireTarget and requireSample), Memory, Cancelled
 /// @par Repeats same bits for any number of threads
 PointHybridResult texturePointsHybrid(const TextureTarget& target, const SampleImage& sample,
                                       const PointHybridOptions& options = {}, const RunContext& ctx = {});
 
-/// Size of the sample's features [texels], 1..side/2: twice the first distance at which the correlation
-/// of texels, the mean along both axes over the channels by variance, falls below 0.1.
+/// Size of the sample's features [texels], 1..side/4: the first distance at which the correlation of texels,
+/// the mean along both axes over the channels by variance, falls below 0.1. Held to a quarter of the side, as
+/// wider gaps leave little of patches that fit into the sample.
 double featureSize(const SampleImage& sample);
 
 /// Lower left corner and size of a window of the sample.

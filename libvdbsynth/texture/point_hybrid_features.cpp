@@ -43,7 +43,7 @@ double covariance(const SampleImage& sample, const std::vector<Moments>& moments
 
 double featureSize(const SampleImage& sample) {
     requireSample(sample);
-    const int most = std::max(1, std::min(sample.width, sample.height) / 2);
+    const int most = std::max(1, std::min(sample.width, sample.height) / 4);
     std::vector<Moments> moments;
     double variance = 0;
     for (int c = 0; c < sample.channels; ++c) {
@@ -52,12 +52,12 @@ double featureSize(const SampleImage& sample) {
     }
     if (!(variance > 0)) return 1;
     int first = 1;  // the first distance at which texels are not correlated
-    for (; first < most / 2; ++first) {
+    for (; first < most; ++first) {
         const double along =
             0.5 * (covariance(sample, moments, first, 0) + covariance(sample, moments, 0, first));
         if (along < kUncorrelated * variance) break;
     }
-    return std::min(double(most), 2.0 * double(first));
+    return double(first);
 }
 
 SampleWindow typicalWindow(const SampleImage& sample, int side) {

@@ -40,7 +40,7 @@ struct PointMatchingResult {
 /// finer one also compares the coarser points over the neighbourhood with the coarser sample, whose texels
 /// are means of four. Neighbours over 2 sqrt(k) spacings, or over half the sample, away are left out.
 /// @throw Error InvalidOption (a field out of its range), EmptyInput, ShapeMismatch, Unusable (as
-/// requireTarget and requireSample), Cancelled
+/// requireTarget and requireSample), Memory, Cancelled
 /// @par Cost    O(points * texels * k); O(points * k^2) if coherent. Memory: 64 times the sample's where that
 ///              is at most 256 MB and within ctx.maxMemory, else it is read between texels as it goes
 /// @par Repeats same bits for any number of threads

@@ -3,7 +3,6 @@
 #include "libvdbsynth/coordinates/site_chart.h"
 #include "libvdbsynth/math/pca.h"
 #include "libvdbsynth/texture/point_matching_steps.h"
-#include "libvdbsynth/texture/site_queue.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +11,7 @@
 namespace vdbsynth {
 namespace {
 
-constexpr std::size_t kBatch = 16;  // sites matched at once
-constexpr std::size_t kLookedAt = 64;
+constexpr std::size_t kBatch = 16;    // sites matched at once
 constexpr double kMostBytes = 256e6;  // of planes
 constexpr std::uint32_t kStartDraw = 0x7a08, kTexelDraw = 0x7a09;
 
@@ -59,15 +57,15 @@ public:
           mCoarser(coarser),
           mOptions(options),
           mContext(ctx),
-          mQueue(level.sites.size()),
-          mSlots(options.coherent ? 1 : kBatch),
-          mMark(level.sites.size(), 0) {
+          mQueue(level),
+          mSlots(options.coherent ? 1 : kBatch) {
         const double wide = std::ceil(2 * std::sqrt(double(options.neighbours)) / options.scale);
         const double half = std::max(1, std::min(sample.width, sample.height) / 2);
         mReach = float(std::min(wide, half));
         const int margin = int(mReach) + 2;
         const double bytes = MatchPlanes::bytes(sample, margin) * (coarser ? 2 : 1);
         const bool all = bytes <= kMostBytes && (ctx.maxMemory == 0 || bytes < 0.5 * double(ctx.maxMemory));
+        requireMemory(ctx, bytes / (kPhases * kPhases), "the sample", "take a smaller one");
         mAxes = principalAxes(sample.values, mChannels, mChannels, 1.0 + 1e-9);
         mPlanes = std::make_unique<MatchPlanes>(rotated(sample), margin, all);
         if (coarser) {
@@ -79,22 +77,16 @@ public:
     }
 
     double run() {
-        std::size_t left = 0;
-        for (std::uint32_t i = 0; i < mSites.size(); ++i) {
-            if (mLevel.coloured[i])
-                raiseAround(i);
-            else
-                ++left;
-        }
+        std::size_t left = std::size_t(std::count(mLevel.coloured.begin(), mLevel.coloured.end(), char(0)));
         Stage stage(mContext, "matching", std::max<std::size_t>(1, left));
         RandomOrder starts(mSites.size(), mContext.seed, kStartDraw);
         const auto isFree = [&](std::uint32_t i) { return !mLevel.coloured[i]; };
+        std::vector<std::uint32_t> batch;
         while (left > 0) {
-            std::size_t count = takeBatch();
-            if (count == 0) {
-                mSlots[0].site = starts.next(isFree);
-                count = 1;
-            }
+            mQueue.next(mSlots.size(), mCoarser != nullptr, batch);
+            if (batch.empty()) batch.push_back(starts.next(isFree));
+            const std::size_t count = batch.size();
+            for (std::size_t s = 0; s < count; ++s) mSlots[s].site = batch[s];
             parallelFor(mContext, count, 1, [&](std::size_t begin, std::size_t end) {
                 for (std::size_t s = begin; s < end; ++s) match(mSlots[s]);
             });
@@ -115,53 +107,6 @@ private:
     SampleImage rotated(SampleImage image) const {
         image.values = rotated(image.values);
         return image;
-    }
-
-    void raiseAround(std::uint32_t site) {
-        for (std::uint32_t k = mSites.begin[site]; k < mSites.begin[site + 1]; ++k)
-            if (!mLevel.coloured[mSites.neighbours[k]]) mQueue.raise(mSites.neighbours[k]);
-    }
-
-    // The next sites of which none is a neighbour of another. @return how many
-    std::size_t takeBatch() {
-        std::size_t count = 0;
-        std::uint32_t most = 0;
-        mAside.clear();
-        ++mBatch;
-        while (count < mSlots.size() && mAside.size() + count < kLookedAt) {
-            const SiteQueue::Entry entry = mQueue.popMost();
-            if (entry.site == SiteQueue::kNone) break;
-            if (!mCoarser && !seesColour(entry.site)) continue;  // only seen by some; it comes again
-            if (count == 0) most = entry.count;
-            const bool few = 4 * entry.count < 3 * most;
-            if (few || besideBatch(entry.site)) {
-                mAside.push_back(entry);
-                if (few) break;
-                continue;
-            }
-            mMark[entry.site] = 2 * mBatch + 1;
-            for (std::uint32_t k = mSites.begin[entry.site]; k < mSites.begin[entry.site + 1]; ++k)
-                mMark[mSites.neighbours[k]] = std::max(mMark[mSites.neighbours[k]], 2 * mBatch);
-            mSlots[count++].site = entry.site;
-        }
-        while (!mAside.empty()) {
-            mQueue.putBack(mAside.back());
-            mAside.pop_back();
-        }
-        return count;
-    }
-
-    bool seesColour(std::uint32_t site) const {
-        const auto first = mSites.neighbours.begin() + mSites.begin[site];
-        return std::any_of(first, first + std::ptrdiff_t(mSites.degree(site)),
-                           [&](std::uint32_t j) { return mLevel.coloured[j] != 0; });
-    }
-
-    bool besideBatch(std::uint32_t site) const {
-        if (mMark[site] >= 2 * mBatch) return true;
-        for (std::uint32_t k = mSites.begin[site]; k < mSites.begin[site + 1]; ++k)
-            if (mMark[mSites.neighbours[k]] == 2 * mBatch + 1) return true;
-        return false;
     }
 
     void match(Slot& slot) const {
@@ -268,7 +213,7 @@ private:
         mAxes.project(mSample.texel(x, y), mValues.data() + std::size_t(slot.site) * mChannels);
         mLevel.coloured[slot.site] = 1;
         mCompared += double(slot.compared);
-        raiseAround(slot.site);
+        mQueue.raiseAround(slot.site);
     }
 
     MatchLevel& mLevel;
@@ -278,11 +223,8 @@ private:
     const MatchLevel* mCoarser;
     const PointMatchingOptions& mOptions;
     const RunContext& mContext;
-    SiteQueue mQueue;
+    MatchQueue mQueue;
     std::vector<Slot> mSlots;
-    std::vector<std::uint64_t> mMark;  // 2 * batch: beside a site of the batch, + 1: in it
-    std::vector<SiteQueue::Entry> mAside;
-    std::uint64_t mBatch = 0;
     float mReach = 1;
     PrincipalAxes mAxes;
     std::vector<float> mValues, mCoarserValues;  // along the axes

@@ -1,5 +1,6 @@
 #pragma once
 #include "libvdbsynth/texture/point_matching.h"
+#include "libvdbsynth/texture/site_queue.h"
 
 #include <array>
 #include <limits>
@@ -66,5 +67,30 @@ float matchCost(const std::vector<MatchTerm>& terms, std::ptrdiff_t at);
 /// Compares all texels of a window, giving up on those that are already worse than the best.
 void matchAll(const std::vector<MatchTerm>& terms, std::ptrdiff_t stride, int width,
               const MatchWindow& window, MatchBest& best);
+
+/// The uncoloured sites of a level, those with the most coloured neighbours first, several at once.
+class MatchQueue {
+public:
+    explicit MatchQueue(const MatchLevel& level);
+
+    /// A site has got its colour.
+    void raiseAround(std::uint32_t site);
+
+    /// Up to `most` sites of which none is a neighbour of another, none with less than 3/4 of the count of
+    /// the first. @param all  also sites that have no coloured neighbours of their own
+    void next(std::size_t most, bool all, std::vector<std::uint32_t>& sites);
+
+private:
+    bool seesColour(std::uint32_t site) const;
+    bool besideBatch(std::uint32_t site) const;
+    void mark(std::uint32_t site);
+
+    const MatchLevel& mLevel;
+    const SurfaceSites& mSites;
+    SiteQueue mQueue;
+    std::vector<std::uint64_t> mMark;  // 2 * batch: beside a site of the batch, + 1: in it
+    std::vector<SiteQueue::Entry> mAside;
+    std::uint64_t mBatch = 0;
+};
 
 }  // namespace vdbsynth

@@ -72,7 +72,7 @@ struct PointParameterizationResult {
 /// so that a mix has few parts; the kMostBlendParts with the largest weights are mixed. A point with no
 /// estimate takes its nearest coloured neighbour's place, or, where none is coloured, one drawn at random.
 /// @throw Error InvalidOption (a field out of its range), EmptyInput, ShapeMismatch, Unusable (as
-/// requireTarget and requireSample), Cancelled
+/// requireTarget and requireSample), Memory, Cancelled
 /// @par Cost    O(points * k) and the neighbours, see docs/texturing.md
 /// @par Repeats same bits for any number of threads
 PointParameterizationResult parameterizePoints(const TextureTarget& target, const SampleImage& sample,

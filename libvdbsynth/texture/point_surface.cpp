@@ -13,6 +13,7 @@
 namespace vdbsynth {
 namespace {
 
+constexpr double kBytesOfPoint = 250;  // beside the neighbours, found and kept
 constexpr std::uint32_t kOrientationDraw = 0x7a01;
 
 template <typename T>
@@ -29,6 +30,8 @@ PointSurface pointSurface(const TextureTarget& target, int neighbours, const Run
     requireOption(neighbours >= 3 && neighbours <= 256, "neighbours", std::to_string(neighbours),
                   "a whole number from 3 to 256");
     requireTarget(target);
+    requireMemory(ctx, double(target.point.size()) * (8.0 * neighbours + kBytesOfPoint),
+                  "the points' neighbours", "ask for fewer neighbours or points");
     PointSurface surface;
     surface.order = mortonOrder(target.point, ctx);
     std::vector<Vec3f> normals = permuted(target.normal, surface.order);

@@ -30,7 +30,7 @@ struct PointSurface {
 
 /// The target's labels are not used: these methods take one sample.
 /// @param neighbours  of each point, 3..256
-/// @throw Error as requireTarget, InvalidOption (neighbours), Cancelled
+/// @throw Error as requireTarget, InvalidOption (neighbours), Memory, Cancelled
 /// @par Repeats same bits for any number of threads
 PointSurface pointSurface(const TextureTarget& target, int neighbours, const RunContext& ctx = {});
 

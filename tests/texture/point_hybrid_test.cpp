@@ -9,11 +9,15 @@
 using namespace vdbsynth;
 
 TEST_CASE("featureSize: by hand on stripes and noise") {
-    CHECK(featureSize(test::noiseSample(64, 3, false)) == 2);  // one texel apart nothing is correlated
+    CHECK(featureSize(test::noiseSample(64, 3, false)) == 1);  // one texel apart nothing is correlated
     CHECK(featureSize({8, 8, 1, false, std::vector<float>(64, 0.5f)}) == 1);
+    // Upright stripes 12 texels wide: 1 - lag / 6 across them, 1 along, so 1 - lag / 12 in the mean.
+    SampleImage stripes{96, 96, 1, false, {}};
+    for (int i = 0; i < 96 * 96; ++i) stripes.values.push_back(i % 24 < 12 ? 0.f : 1.f);
+    CHECK(featureSize(stripes) == 11);
     CHECK(featureSize({1, 1, 1, false, {0.5f}}) == 1);
     // Means over 3 x 3 are correlated 2 texels apart (1/3), not 3.
-    CHECK(featureSize(test::cloudSample(96, 3, false)) == 6);
+    CHECK(featureSize(test::cloudSample(96, 3, false)) == 3);
 }
 
 TEST_CASE("typicalWindow: the one most like the whole") {

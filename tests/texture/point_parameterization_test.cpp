@@ -153,16 +153,25 @@ TEST_CASE("parameterizePoints: a cap of a ball has the area of the geodesic char
     std::size_t seed = 0;
     for (std::size_t i = 0; i < cap.point.size(); ++i)
         if (result.position[i].x == 0 && result.position[i].y == 0) seed = i;
-    // Radii of the chart are the arcs from the seed; then rings have the area factor.
-    double sum = 0, count = 0;
+    // Arcs from the seed are kept, and what is an angle about it; the area at an arc t is then t / sin(t) of
+    // the ball's.
+    const SurfaceSites sites = sitesOfPoints(cap.point, cap.normal, 6);
+    double radius = 0, points = 0, area = 0, expected = 0;
     for (std::size_t i = 0; i < cap.point.size(); ++i) {
         const double arc = std::acos(std::min(1.0, double(dot(cap.normal[i], cap.normal[seed]))));
-        if (arc < 0.1) continue;
+        if (arc < 0.1 || arc > 0.4) continue;
         const double x = result.position[i].x, y = result.position[i].y;
-        sum += std::sqrt(x * x + y * y) * result.spacing / arc;
-        ++count;
+        radius += std::sqrt(x * x + y * y) * result.spacing / arc;
+        ++points;
+        const std::uint32_t a = sites.neighbours[sites.begin[i]], b = sites.neighbours[sites.begin[i] + 2];
+        const Vec3f whole = cross(cap.point[a] - cap.point[i], cap.point[b] - cap.point[i]);
+        const ChartPosition qa = result.position[a], qb = result.position[b];
+        const double flat = (qa.x - x) * (qb.y - y) - (qa.y - y) * (qb.x - x);
+        area += std::abs(flat) * result.spacing * result.spacing;
+        expected += double(length(whole)) * arc / std::sin(arc);
     }
-    CHECK(sum / count == Approx(1).epsilon(0.01));
+    CHECK(radius / points == Approx(1).epsilon(0.01));
+    CHECK(area / expected == Approx(1).epsilon(0.01));
 }
 
 TEST_CASE("parameterizePoints: patches of a sample that is not tileable stay inside it") {

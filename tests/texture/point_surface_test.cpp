@@ -16,6 +16,9 @@ TEST_CASE("pointSurface: sites are the points along a curve, lengths in spacings
     for (std::size_t i = 0; i < surface.order.size(); ++i)
         REQUIRE(length(surface.sites.point[i] - target.point[surface.order[i]]) == 0);
     CHECK(pointSurface({{{1, 2, 3}}, {{0, 0, 1}}, {}, {}}, 8).spacing == 1);
+    RunContext little;
+    little.maxMemory = 1000;
+    CHECK(test::thrownBy([&] { pointSurface(target, 8, little); }).code == int(ErrorCode::Memory));
     CHECK_THROWS_AS(pointSurface(target, 2), Error);
     CHECK_THROWS_AS(pointSurface(target, 257), Error);
     CHECK_THROWS_AS(pointSurface({}, 8), Error);

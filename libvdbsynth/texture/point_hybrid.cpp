@@ -104,7 +104,7 @@ private:
         mResult.gaps = patches.gaps;
         const double step = std::sqrt(double(options.neighbours));
         const double missing = mResult.featureSize * options.scale - step / 2;
-        const int steps = patches.gaps > 0 ? int(std::clamp(std::ceil(missing / step), 0.0, 1000.0)) : 0;
+        const int steps = patches.gaps > 0 ? int(std::clamp(std::round(missing / step), 0.0, 1000.0)) : 0;
         mResult.widened = widenGaps(mSurface.sites, patches.patch, steps, mContext);
         mSites = uncoloured(mSurface.order.size(), mSample.channels);
         colourPatches(mSurface, patches, mSample, options.scale, mSites, mContext);

@@ -8,7 +8,7 @@ struct PointHybridOptions {
     PointParameterizationOptions parameterization;  ///< its `blend` is not used
     int levels = 1;                                 ///< of the matching in gaps, 1..8
     bool coherent = false;   ///< matching tries only texels where coloured neighbours came from, shifted
-    double featureSize = 0;  ///< [texels] gaps are at least this wide; 0: featureSize(sample)
+    double featureSize = 0;  ///< [texels] gaps get about this wide; 0: featureSize(sample)
     int matchSample = 0;     ///< [texels] gaps are matched in a window of the sample with this side, at
                              ///< least 8; 0: in the whole sample
 };
@@ -29,10 +29,11 @@ struct PointHybridResult {
 /// The third of the paper's methods [zhang2004, 5]: the surface is cut into patches
 /// (point_parameterization.h), their gaps are widened to the texture's feature size, and the points in them
 /// matched (point_matching.h). A gap of sqrt(k) / 2 points grows by sqrt(k) in a step, in which all points
-/// with a gap point among their k nearest join it; patches that vanish leave their points to the matching.
+/// with a gap point among their k nearest join it; the number of steps is that which comes nearest to the
+/// feature size. Patches that vanish leave their points to the matching.
 ///
-/// Decisions: a gap point's direction continues those of the points around it, nearest patches first, so that
-/// what is matched stands as the patches beside it do. With more levels a coarse point counts as coloured
+/// Decisions: a gap point's direction is the mean of those around it, from the patches inward, so that what
+/// is matched stands as the patches beside it do. With more levels a coarse point counts as coloured
 /// only if all its members are; the others are random on the coarsest level.
 /// @throw Error InvalidOption (a field out of its range), EmptyInput, ShapeMismatch, Unusable (as
 /// requireTarget and requireSample), Memory, Cancelled

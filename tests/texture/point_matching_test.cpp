@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include <limits>
+#include <set>
 
 using namespace vdbsynth;
 
@@ -35,28 +36,51 @@ void colourAllBut(MatchLevel& level, std::size_t site, int channels) {
     }
 }
 
-// The oracle: the best of all texels, read one by one.
-int bestTexel(const MatchLevel& level, std::size_t i, const SampleImage& sample) {
+// A neighbour as the oracle sees it: where it is compared, in which image, with what.
+struct Compared {
+    Vec2f by;
+    const SampleImage* image;
+    const float* colour;
+};
+
+std::vector<Compared> neighbourhood(const MatchLevel& level, std::size_t i, const SampleImage& sample,
+                                    const MatchLevel* coarser, const SampleImage* enlarged) {
     const SiteFrame frame = siteFrame(level.sites.normal[i], level.tangent[i]);
-    float best = std::numeric_limits<float>::infinity();
+    const auto place = [&](const Vec3f& point) {
+        const Vec2f by = flattened(frame, point - level.sites.point[i]) * float(1 / level.texel);
+        return Vec2f{std::floor(by.x * 8 + 0.5f) / 8, std::floor(by.y * 8 + 0.5f) / 8};
+    };
+    const std::size_t channels = std::size_t(sample.channels);
+    std::vector<Compared> all;
+    std::set<std::uint32_t> parents;
+    if (coarser) parents.insert(level.parent[i]);
+    for (std::size_t k = level.sites.begin[i]; k < level.sites.begin[i + 1]; ++k) {
+        const std::uint32_t j = level.sites.neighbours[k];
+        if (coarser) parents.insert(level.parent[j]);
+        if (level.coloured[j])
+            all.push_back({place(level.sites.point[j]), &sample, level.values.data() + j * channels});
+    }
+    for (const std::uint32_t p : parents)
+        all.push_back({place(coarser->sites.point[p]), enlarged, coarser->values.data() + p * channels});
+    return all;
+}
+
+// The oracle: the best of all texels, read one by one.
+int bestTexel(const std::vector<Compared>& all, const SampleImage& sample) {
+    double best = std::numeric_limits<double>::infinity();
     int texel = -1;
     for (int t = 0; t < int(sample.texels()); ++t) {
-        float cost = 0;
+        double cost = 0;
         bool inside = true;
-        for (std::size_t k = level.sites.begin[i]; k < level.sites.begin[i + 1]; ++k) {
-            const std::size_t j = level.sites.neighbours[k];
-            if (!level.coloured[j]) continue;
-            const Vec2f by =
-                flattened(frame, level.sites.point[j] - level.sites.point[i]) * float(1 / level.texel);
-            const float x = float(t % sample.width) + std::floor(by.x * 8 + 0.5f) / 8;
-            const float y = float(t / sample.width) + std::floor(by.y * 8 + 0.5f) / 8;
+        for (const Compared& one : all) {
+            const float x = float(t % sample.width) + one.by.x, y = float(t / sample.width) + one.by.y;
             if (!sample.tileable &&
                 (x < 0 || y < 0 || x > float(sample.width - 1) || y > float(sample.height - 1)))
                 inside = false;
             float read[4];
-            readLinear(sample, {x + 0.5f, y + 0.5f}, read);
+            readLinear(*one.image, {x + 0.5f, y + 0.5f}, read);
             for (int c = 0; c < sample.channels; ++c) {
-                const float d = read[c] - level.values[j * std::size_t(sample.channels) + std::size_t(c)];
+                const double d = double(read[c]) - double(one.colour[c]);
                 cost += d * d;
             }
         }
@@ -68,32 +92,41 @@ int bestTexel(const MatchLevel& level, std::size_t i, const SampleImage& sample)
     return texel;
 }
 
-void checkAgainstOracle(const SampleImage& sample, const RunContext& ctx = {}) {
+// Takes the sites that have no colour out of the graph, but one, and calls them coloured.
+void leaveOnly(MatchLevel& level, std::size_t site) {
+    std::vector<std::uint32_t> begin{0}, neighbours;
+    for (std::size_t i = 0; i < level.sites.size(); ++i) {
+        for (std::size_t k = level.sites.begin[i]; k < level.sites.begin[i + 1]; ++k) {
+            const std::uint32_t j = level.sites.neighbours[k];
+            if (level.coloured[j] || j == site) neighbours.push_back(j);
+        }
+        begin.push_back(std::uint32_t(neighbours.size()));
+    }
+    level.sites.begin = begin;
+    level.sites.neighbours = neighbours;
+    for (std::size_t i = 0; i < level.sites.size(); ++i) level.coloured[i] = i != site;
+}
+
+void checkAgainstOracle(const SampleImage& sample, bool twoLevels, const RunContext& ctx = {}) {
     const TextureTarget target = test::targetOf(test::spiralSphere(900, 1));
+    PointMatchingOptions options;
+    options.neighbours = 16;
+    const SampleImage half = halved(sample);
+    SampleImage enlarged = sample;
+    for (int t = 0; t < int(sample.texels()); ++t)
+        readLinear(half, {(float(t % sample.width) + 0.5f) * 0.5f, (float(t / sample.width) + 0.5f) * 0.5f},
+                   enlarged.values.data() + t * sample.channels);
     for (const std::size_t site : {0u, 100u, 355u, 700u, 899u}) {
         MatchLevel level = levelOf(target, 16, sample.channels);
         colourAllBut(level, site, sample.channels);
-        MatchLevel one = level;  // the site alone: the others that have no colour are not asked
-        for (std::size_t i = 0; i < one.sites.size(); ++i)
-            if (!one.coloured[i] && i != site) one.coloured[i] = 1;
-        // Sites coloured after all would be neighbours: take them out of the graph.
-        SurfaceSites& graph = one.sites;
-        std::vector<std::uint32_t> begin{0}, neighbours;
-        for (std::size_t i = 0; i < graph.size(); ++i) {
-            for (std::size_t k = graph.begin[i]; k < graph.begin[i + 1]; ++k)
-                if (level.coloured[graph.neighbours[k]] || graph.neighbours[k] == site)
-                    neighbours.push_back(graph.neighbours[k]);
-            begin.push_back(std::uint32_t(neighbours.size()));
-        }
-        graph.begin = begin;
-        graph.neighbours = neighbours;
-        PointMatchingOptions options;
-        options.neighbours = 16;
-        matchLevel(one, sample, nullptr, nullptr, options, ctx);
-        const int expected = bestTexel(one, site, sample);
-        CHECK(one.coordinate[site].x == float(expected % sample.width) + 0.5f);
-        CHECK(one.coordinate[site].y == float(expected / sample.width) + 0.5f);
-        CHECK(one.values[site * std::size_t(sample.channels)] ==
+        MatchLevel coarser = coarserLevel(level, 16);
+        leaveOnly(level, site);
+        const int expected =
+            bestTexel(neighbourhood(level, site, sample, twoLevels ? &coarser : nullptr, &enlarged), sample);
+        matchLevel(level, sample, twoLevels ? &coarser : nullptr, twoLevels ? &half : nullptr, options, ctx);
+        CHECK(level.coordinate[site].x == float(expected % sample.width) + 0.5f);
+        CHECK(level.coordinate[site].y == float(expected / sample.width) + 0.5f);
+        CHECK(level.values[site * std::size_t(sample.channels)] ==
               sample.texel(expected % sample.width, expected / sample.width)[0]);
     }
 }
@@ -124,16 +157,18 @@ void checkContinues(bool coherent) {
 }  // namespace
 
 TEST_CASE("matchLevel: the best of all texels, as a plain search finds it") {
-    checkAgainstOracle(test::noiseSample(24, 3, true));
-    checkAgainstOracle(test::noiseSample(24, 3, false));
-    checkAgainstOracle(test::cloudSample(41, 1, false));
-    checkAgainstOracle({50, 9, 2, true, test::noiseSample(30, 1, true).values});
+    for (const bool twoLevels : {false, true}) {
+        checkAgainstOracle(test::noiseSample(24, 3, true), twoLevels);
+        checkAgainstOracle(test::noiseSample(24, 3, false), twoLevels);
+        checkAgainstOracle(test::cloudSample(41, 1, false), twoLevels);
+        checkAgainstOracle({50, 18, 1, true, test::noiseSample(30, 1, true).values}, twoLevels);
+    }
 }
 
 TEST_CASE("matchLevel: reading between texels as it goes finds the same") {
     RunContext little;
     little.maxMemory = 2000000;  // too little for all phases
-    checkAgainstOracle(test::noiseSample(24, 3, false), little);
+    checkAgainstOracle(test::noiseSample(24, 3, false), true, little);
     const TextureTarget target = test::targetOf(test::spiralSphere(500, 1));
     const SampleImage sample = test::cloudSample(20, 3, false);
     PointMatchingOptions options;

@@ -1,0 +1,56 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/coordinates/coordinate_synthesis.h"
+#include "libvdbsynth/texture/textured_sites.h"
+
+#include <vector>
+
+namespace vdbsynth {
+
+/// A surface to texture, given by its points.
+struct TextureTarget {
+    std::vector<Vec3f> point;         ///< [points] world; some may coincide
+    std::vector<Vec3f> normal;        ///< [points] outward, length 1
+    std::vector<Vec3f> direction;     ///< [points] given directions of +u, 0 where none; empty: none given
+    std::vector<std::int32_t> label;  ///< [points] number of the sample each takes; empty: 0 everywhere
+};
+
+/// @throw Error EmptyInput (no points), ShapeMismatch (arrays of different lengths), Unusable (a point or
+/// normal that is not finite, a normal of length 0)
+void requireTarget(const TextureTarget& target);
+
+struct SurfaceTextureOptions {
+    double texel = 0;  ///< [world] side of a texel on the surface, above 0; 0: the mean distance of a point
+                       ///< to its nearest, times `scale`
+    double scale = 1;  ///< above 0: 2 makes the texture twice as large
+    CoordinateOptions synthesis;
+};
+
+struct SurfaceTextureResult {
+    TexturedSites sites;                       ///< one per point of the target
+    double texel = 0;                          ///< [world]
+    std::vector<CoordinateLevelStats> levels;  ///< coarse to fine
+    std::vector<Vec3f> singularities;          ///< [world] of the directions
+};
+
+/// Textures a surface by coordinate synthesis (coordinates/coordinate_synthesis.h), the default method.
+/// Directions that are not given follow those given, or else are the smoothest field; points that coincide
+/// and face the same way are textured as one.
+/// @throw Error InvalidOption (a field out of its range), as requireTarget, Unusable (directions only along
+/// normals), ShapeMismatch (samples with different numbers of channels, labels without a sample), EmptyInput
+/// (an empty sample), Memory, Cancelled
+/// @par Cost    O(points log points + texels)
+/// @par Repeats same bits for any number of threads
+SurfaceTextureResult textureSurface(const TextureTarget& target, const std::vector<SampleImage>& samples,
+                                    const SurfaceTextureOptions& options = {}, const RunContext& ctx = {});
+
+/// Tangents for the points of a target, the direction of +u: found on sites merged to at most about a quarter
+/// of the points, where there are more than 20 000, and read between them.
+/// @param spacing        [world] between points, above 0
+/// @param singularities  set to one position in each region without a continuous direction; null: not wanted
+/// @throw Error Unusable (directions only along normals), Cancelled
+/// @par Repeats same bits for any number of threads
+std::vector<Vec3f> targetTangents(const TextureTarget& target, double spacing,
+                                  std::vector<Vec3f>* singularities = nullptr, const RunContext& ctx = {});
+
+}  // namespace vdbsynth

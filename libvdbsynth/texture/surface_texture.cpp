@@ -55,11 +55,13 @@ SurfaceTextureResult textureSurface(const TextureTarget& target, const std::vect
             Vec3f s{0, 0, 0};
             s[(axis + 1) % 3] = 1;
             if (!target.direction.empty() && length(target.direction[i]) > 0) s = target.direction[i];
-            const Vec3f tangent = tangentNear(n, s), up = cross(n, tangent);
+            const Vec3f tangent = tangentNear(n, s);
+            const float side = n[axis] < 0 ? -1.f : 1.f;
+            const Vec3f& p = target.point[i];
             sites.sample[i] = target.label.empty() ? 0 : target.label[i];
             sites.tangent[i] = tangent;
             const float texel = float(result.texel);
-            sites.coordinate[i] = {dot(target.point[i], tangent) / texel, dot(target.point[i], up) / texel};
+            sites.coordinate[i] = {p[(axis + 1) % 3] / texel, side * p[(axis + 2) % 3] / texel};
             readCubic(samples[std::size_t(sites.sample[i])], sites.coordinate[i],
                       sites.values.data() + i * channels);
         }

@@ -61,6 +61,14 @@ const Attribute& column(const std::string& path, const Attributes& attributes, c
     return *found;
 }
 
+// As it was written, so that the same sample gives the same bits; mended if another program changed it.
+Vec3f tangentOf(const Vec3f& normal, const float* values) {
+    constexpr float kClose = 1e-3f;
+    const Vec3f tangent{values[0], values[1], values[2]};
+    const bool sound = std::abs(length(tangent) - 1) < kClose && std::abs(dot(normal, tangent)) < kClose;
+    return sound ? tangent : tangentNear(normal, tangent);
+}
+
 void readCoordinates(const std::string& path, TextureMap& map) {
     const Attributes& all = map.shape.attributes;
     const Attribute &u = column(path, all, kColumns[0]), &v = column(path, all, kColumns[1]),
@@ -80,9 +88,7 @@ void readCoordinates(const std::string& path, TextureMap& map) {
                             std::to_string(map.samples.size()) + " samples");
         sites.sample[site] = std::int32_t(number);
         sites.coordinate[site] = {u.values[e], v.values[e]};
-        sites.tangent[site] = tangentNear(
-            map.shape.normal[site],
-            {tangent.values[3 * e], tangent.values[3 * e + 1], tangent.values[3 * e + 2]});
+        sites.tangent[site] = tangentOf(map.shape.normal[site], &tangent.values[3 * e]);
     }
 }
 

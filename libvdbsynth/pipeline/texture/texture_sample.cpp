@@ -32,7 +32,7 @@ Raster readImage(const std::string& path, const RunContext& ctx) {
     if (range.infinite > 0) throw Error(ErrorCode::BadData, path + ": holds infinite values");
     if (range.missing > 0)
         throw Error(ErrorCode::Unusable,
-                    path + ": " + std::to_string(range.missing) + " of its " + sides() +
+                    path + ": " + std::to_string(range.missing / std::size_t(raster.channels)) + " of its " + sides() +
                         " pixels have no data (alpha 0 or NaN); crop them off or paint them");
     return raster;
 }

@@ -16,6 +16,11 @@
 namespace vdbsynth {
 namespace {
 
+// Unchanged if its length is 1 already, so that what is read again keeps its bits.
+Vec3f unit(const Vec3f& normal) {
+    return std::abs(length(normal) - 1) < 1e-6f ? normal : normalized(normal);
+}
+
 bool usable(const Vec3f& normal) {
     const float size = length(normal);
     return std::isfinite(size) && size > 1e-12f;
@@ -51,7 +56,7 @@ std::vector<Vec3d> summedNormals(const TextureShape& shape, const std::vector<Ve
     std::vector<Vec3d> sums(shape.site.size());
     for (std::size_t i = 0; i < normals.size(); ++i)
         if (usable(normals[i]))
-            sums[shape.siteOf[i]] = sums[shape.siteOf[i]] + cast<double>(normalized(normals[i]));
+            sums[shape.siteOf[i]] = sums[shape.siteOf[i]] + cast<double>(unit(normals[i]));
     if (!normals.empty()) return sums;
     for (const Triangle& t : shape.triangles) {
         const Vec3d a = cast<double>(shape.points[t[0]]), b = cast<double>(shape.points[t[1]]),
@@ -67,10 +72,12 @@ void normalsFrom(TextureShape& shape, const std::vector<Vec3f>& normals) {
     const std::vector<Vec3d> sums = summedNormals(shape, normals);
     shape.normal.assign(sums.size(), Vec3f{0, 0, 0});
     for (std::size_t i = 0; i < sums.size(); ++i)
-        if (length(sums[i]) > 1e-30) shape.normal[i] = cast<float>(normalized(sums[i]));
+        if (length(sums[i]) > 1e-30)
+            shape.normal[i] = std::abs(length(sums[i]) - 1) < 1e-6 ? cast<float>(sums[i])
+                                                                  : cast<float>(normalized(sums[i]));
     for (std::size_t i = 0; i < normals.size(); ++i)
         if (!usable(shape.normal[shape.siteOf[i]]) && usable(normals[i]))
-            shape.normal[shape.siteOf[i]] = normalized(normals[i]);
+            shape.normal[shape.siteOf[i]] = unit(normals[i]);
 }
 
 void estimatedNormals(TextureShape& shape, const RunContext& ctx) {
@@ -89,7 +96,7 @@ void fillNormals(TextureShape& shape, const RunContext& ctx) {
             n = {0, 0, 1};
             ++without;
         }
-        n = normalized(n);
+        n = unit(n);
     }
     if (without > 0)
         message(ctx, MessageLevel::Note,

@@ -105,7 +105,7 @@ std::vector<std::int32_t> labelsOf(const TextureShape& shape, const std::string&
         for (const Attribute& other : shape.attributes)
             if (other.width == 1) names += (names.empty() ? "" : ", ") + other.name;
         throw Error(ErrorCode::Unusable,
-                    shape.name + ": has no attribute " + attribute + " of one number for `labels`; it has " +
+                    shape.name + ": has no attribute " + attribute + " of one number for `regionAttribute`; it has " +
                         (names.empty() ? "none" : names));
     }
     std::vector<std::int32_t> labels(shape.site.size(), -1);

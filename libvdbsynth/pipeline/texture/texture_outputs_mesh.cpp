@@ -106,11 +106,18 @@ void notePictures(const TextureShape& shape, const std::vector<TextureSample>& s
     if (findAttribute(shape.attributes, "uv"))
         message(ctx, MessageLevel::Note,
                 path + ": the texture coordinates of " + shape.name + " are replaced by those of the sample");
+    if (extensionOf(path) == "obj") return;
     for (const TextureSample& sample : samples)
-        for (const SampleMap& map : sample.maps)
-            if (map.white != 255 && extensionOf(path) != "obj")
-                message(ctx, MessageLevel::Note, path + ": the map " + map.name + " of " + sample.name +
-                                                     " is embedded as a picture of 8 bits");
+        for (const SampleMap& map : sample.maps) {
+            const bool embedded = map.name == "Cd" || map.name == "roughness" || map.name == "metallic" ||
+                                  (map.name == "normal" && map.channels == 3);
+            if (embedded && map.white == 255) continue;
+            message(ctx, MessageLevel::Note,
+                    path + ": the map " + map.name + " of " + sample.name +
+                        (embedded ? " is embedded as a picture of 8 bits"
+                                  : " is written as values of vertices, as glTF's materials have no such "
+                                    "picture"));
+        }
 }
 
 void writePictured(const TextureShape& shape, const TextureResult& result,

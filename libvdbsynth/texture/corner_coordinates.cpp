@@ -35,10 +35,8 @@ Chart chartOf(const TexturedSurface& surface, const Triangle& t, std::size_t cor
         }
         const Vec2f wanted = chart.at[k] = extendedCoordinate(surface, t[corner], surface.point[t[k]]);
         if (sites.sample[t[k]] != sample) continue;
-        const Vec2f own =
-            nearestCopy(surface.samples[std::size_t(sample)], sites.coordinate[t[k]], wanted);
-        const float across =
-            length(surface.point[t[k]] - surface.point[t[corner]]) / float(surface.texel);
+        const Vec2f own = nearestCopy(surface.samples[std::size_t(sample)], sites.coordinate[t[k]], wanted);
+        const float across = length(surface.point[t[k]] - surface.point[t[corner]]) / float(surface.texel);
         if (!(length(own - wanted) <= kSlope * across + kTexels)) continue;
         chart.at[k] = own;
         ++chart.continued;

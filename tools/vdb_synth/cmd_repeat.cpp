@@ -155,11 +155,11 @@ void repeat(Run& run) {
 
 }  // namespace
 
-const Command kRepeat{"repeat",
-                      "repeat MAP EXEMPLAR... -o OUT [options] | repeat MAP A2... B -o OUT (an analogy's "
-                      "map) | repeat MAP [EXEMPLAR] KEPT -o OUT (a map of synth --keep) | repeat TEXTURED.ply "
-                      "IMAGE... -o OUT",
-                      "Apply a saved source map again", "vdb_synth repeat map.vdb grid.vdb -o again.vdb",
-                      repeat};
+const Command kRepeat{
+    "repeat",
+    "repeat MAP EXEMPLAR... -o OUT [options] | repeat MAP A2... B -o OUT (an analogy's "
+    "map) | repeat MAP [EXEMPLAR] KEPT -o OUT (a map of synth --keep) | repeat TEXTURED.ply "
+    "IMAGE... -o OUT",
+    "Apply a saved source map again", "vdb_synth repeat map.vdb grid.vdb -o again.vdb", repeat};
 
 }  // namespace vdbsynth::cli

@@ -33,8 +33,8 @@ void refuseOtherMethods(const Arguments& arguments) {
     for (const OfMethods& of : kOfMethods)
         if (arguments.has(of.option) &&
             std::find(of.methods.begin(), of.methods.end(), method) == of.methods.end())
-            throw Error(ErrorCode::InvalidOption, std::string("--") + of.option +
-                                                      ": has no effect with --method " + method);
+            throw Error(ErrorCode::InvalidOption,
+                        std::string("--") + of.option + ": has no effect with --method " + method);
     if (arguments.has("draft") && arguments.has("passes"))
         throw Error(ErrorCode::InvalidOption, "--draft and --passes: give one of them");
     if (arguments.has("displace") != arguments.has("amplitude"))
@@ -70,8 +70,9 @@ void checkRegions(const Arguments& arguments, const std::vector<SampleFiles>& fi
         throw Error(ErrorCode::InvalidOption, "--region and --region-attribute: give one of them");
     if (files.size() > 1 && !region && !attribute)
         throw Error(ErrorCode::InvalidOption,
-                    arguments.inputs[2] + ": several images need --region MODEL or --region-attribute NAME, "
-                                          "which say where each goes");
+                    arguments.inputs[2] +
+                        ": several images need --region MODEL or --region-attribute NAME, "
+                        "which say where each goes");
     if (region && files.size() != 2)
         throw Error(ErrorCode::InvalidOption, "--region: needs two images, for its outside and its inside");
     if (!arguments.has("displace")) return;
@@ -170,6 +171,7 @@ void texture(Run& run) {
 
 const Command kTexture{"texture", "texture TARGET IMAGE... -o OUT [options]",
                        "Colour points, a mesh or a level set like an image",
-                       "vdb_synth texture bunny.off brick.png -o bunny.ply -o bunny.glb -o bunny.vdb", texture};
+                       "vdb_synth texture bunny.off brick.png -o bunny.ply -o bunny.glb -o bunny.vdb",
+                       texture};
 
 }  // namespace vdbsynth::cli

@@ -155,7 +155,8 @@ std::string allowedText(const Option& option) {
             return "axis:x|y|z or axis:-x, around:x|y|z, radial, curvature, a grid FILE.vdb[:GRID], or "
                    "strokes in a .csv, .json or .ply file";
         case Kind::NamedImage:
-            return "NAME=FILE with an image, for example roughness=rough.png; a name of letters, digits and _";
+            return "NAME=FILE with an image, for example roughness=rough.png; a name of letters, digits and "
+                   "_";
         case Kind::Hole:
             return "a model, a box i,j,k,I,J,K, or auto";
         case Kind::File:

@@ -25,7 +25,8 @@ std::vector<Option> inputTable() {
             .butFor("make", [](Option& o) { o.initially("1").noting("").in(Group::Result); })
             .butFor("mask", [](Option& o) { o.otherwiseIs("1 for box and ball"); })
             .butFor("analogy", [](Option& o) { o.says("side of a voxel of B"); })
-            .butFor("texture", [](Option& o) { o.says("side of a voxel of a level set, or of OpenVDB points"); })
+            .butFor("texture",
+                    [](Option& o) { o.says("side of a voxel of a level set, or of OpenVDB points"); })
             .butFor("repeat",
                     [](Option& o) {
                         o.says("side of a voxel of the exemplars, for a map of synth")
@@ -194,9 +195,10 @@ std::vector<Option> outputTable() {
             .takenBy({"texture"}),
         flag("bake")
             .in(Group::Output)
-            .says("bake .png and .exr outputs onto the target's own texture coordinates: the map that ends the "
-                  "file's name (x_roughness.png), else the colour; <UDIM> in a name writes a picture for each "
-                  "tile")
+            .says(
+                "bake .png and .exr outputs onto the target's own texture coordinates: the map that ends the "
+                "file's name (x_roughness.png), else the colour; <UDIM> in a name writes a picture for each "
+                "tile")
             .takenBy({"texture", "repeat"}),
         whole("bake-size", "N", 16, 16384)
             .in(Group::Output)

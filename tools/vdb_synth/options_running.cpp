@@ -5,7 +5,7 @@
 namespace vdbsynth::cli {
 
 std::vector<Option> runningOptionTable() {
-    const std::vector<std::string> every{"convert", "info",   "crop",    "mask",   "match", "synth",
+    const std::vector<std::string> every{"convert", "info",    "crop",   "mask",    "match",  "synth",
                                          "analogy", "texture", "repeat", "compare", "render", "make"};
     std::vector<Option> table{
         option(Kind::Seed, "seed", "N")

@@ -41,7 +41,9 @@ std::vector<Option> methodTable() {
             .says("side of the part of the image that --method hybrid matches in")
             .otherwiseIs("the whole image")
             .takenBy(kTexture),
-        flag("draft").says("a quick look: no passes of correction but on the coarsest level").takenBy(kTexture),
+        flag("draft")
+            .says("a quick look: no passes of correction but on the coarsest level")
+            .takenBy(kTexture),
     };
 }
 

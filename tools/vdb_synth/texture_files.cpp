@@ -29,8 +29,8 @@ std::vector<SampleFiles> sampleFilesOf(const Arguments& arguments) {
         };
         const auto sample = std::find_if(files.begin(), files.end(), lacks);
         if (sample == files.end())
-            throw Error(ErrorCode::InvalidOption, "--channel " + text + ": one " + map.first +
-                                                      " too many; give one for each image");
+            throw Error(ErrorCode::InvalidOption,
+                        "--channel " + text + ": one " + map.first + " too many; give one for each image");
         sample->maps.push_back(map);
     }
     for (const SampleFiles& sample : files)
@@ -82,7 +82,8 @@ void repeatTextureMap(Run& run) {
             throw Error(ErrorCode::InvalidOption, std::string("--") + name + ": has no effect on a texture");
     run.reserveOutputs();
     if (!isTextureMap(mapPath))
-        throw Error(ErrorCode::BadData, mapPath + ": is no textured file: it has no comments vdbsynth:sample");
+        throw Error(ErrorCode::BadData,
+                    mapPath + ": is no textured file: it has no comments vdbsynth:sample");
     TextureMap map = readTextureMap(mapPath, run.context);
     run.noteInput(mapPath);
     requireOutputs(map.shape, paths, outputs);

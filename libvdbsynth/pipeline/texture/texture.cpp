@@ -104,9 +104,9 @@ std::vector<std::int32_t> labelsOf(const TextureShape& shape, const std::string&
         std::string names;
         for (const Attribute& other : shape.attributes)
             if (other.width == 1) names += (names.empty() ? "" : ", ") + other.name;
-        throw Error(ErrorCode::Unusable,
-                    shape.name + ": has no attribute " + attribute + " of one number for `regionAttribute`; it has " +
-                        (names.empty() ? "none" : names));
+        throw Error(ErrorCode::Unusable, shape.name + ": has no attribute " + attribute +
+                                             " of one number for `regionAttribute`; it has " +
+                                             (names.empty() ? "none" : names));
     }
     std::vector<std::int32_t> labels(shape.site.size(), -1);
     for (std::size_t i = 0; i < found->values.size(); ++i) {
@@ -135,7 +135,8 @@ void displace(TextureShape& shape, const TextureResult& result, const std::vecto
     for (const SampleMap& of : samples.front().maps)
         if (of.name == map) found = &of;
     requireOption(found != nullptr, "displace", map, "the name of a map of the sample");
-    const std::size_t channels = std::size_t(samples.front().image.channels), first = std::size_t(found->first);
+    const std::size_t channels = std::size_t(samples.front().image.channels),
+                      first = std::size_t(found->first);
     shape.moved = shape.site;
     for (std::size_t i = 0; i < shape.site.size(); ++i) {
         const float height = result.sites.values[i * channels + first];

@@ -18,14 +18,14 @@ enum class TextureMethod { Default, Parameterize, Match, Hybrid };
 
 struct TextureOptions {
     TextureMethod method = TextureMethod::Default;
-    double scale = 1;  ///< 0.01..100: 2 makes the texture twice as large. At 1 a texel is the mean distance of
-                       ///< a site to its nearest.
+    double scale = 1;  ///< 0.01..100: 2 makes the texture twice as large. At 1 a texel is the mean distance
+                       ///< of a site to its nearest.
     std::optional<DirectionSource> direction;  ///< of the sample's u axis over the target; none: free
     CoordinateOptions synthesis;               ///< of the default method
-    int neighbours = 25;   ///< 4..128, of the paper's methods
-    int levels = 0;        ///< 1..12, of the sample's pyramid; 0: as many as fit
-    bool coherent = false;  ///< of `match`: only candidates that continue neighbours
-    int matchSample = 0;    ///< [texels] side of the part of the sample that `hybrid` matches in; 0: all of it
+    int neighbours = 25;                       ///< 4..128, of the paper's methods
+    int levels = 0;                            ///< 1..12, of the sample's pyramid; 0: as many as fit
+    bool coherent = false;                     ///< of `match`: only candidates that continue neighbours
+    int matchSample = 0;  ///< [texels] side of the part of the sample that `hybrid` matches in; 0: all of it
 };
 
 /// @throw Error InvalidOption (a field out of its range, a direction without its grid or strokes)

@@ -110,12 +110,14 @@ std::vector<std::int32_t> ownersOf(const Bake& bake, const Tile& tile,
         const BakedTriangle& triangle = bake.triangles[std::size_t(t)];
         const UvBox box = boxOf(triangle);
         const auto pixel = [&](float at, int from) {
-            return int(std::clamp(std::floor((at - float(from)) * float(bake.size)), 0.f, float(bake.size - 1)));
+            return int(
+                std::clamp(std::floor((at - float(from)) * float(bake.size)), 0.f, float(bake.size - 1)));
         };
         for (int y = pixel(box.low, tile.first); y <= pixel(box.high, tile.first); ++y)
             for (int x = pixel(box.left, tile.second); x <= pixel(box.right, tile.second); ++x) {
                 std::int32_t& owner = owners[std::size_t(y) * std::size_t(bake.size) + std::size_t(x)];
-                if (owner == kNobody && weightsAt(triangle, pixelCentre(bake, tile, x, y)).inside()) owner = t;
+                if (owner == kNobody && weightsAt(triangle, pixelCentre(bake, tile, x, y)).inside())
+                    owner = t;
             }
     }
     return owners;
@@ -142,7 +144,8 @@ void pad(std::vector<std::int32_t>& owners, int size) {
 void turnNormal(const BakedTriangle& t, const Vec2f* at, float* n) {
     // The sample's direction of the target's u: d(at)/du of the affine map between both triangles.
     const Vec2f e1 = t.uv[1] - t.uv[0], e2 = t.uv[2] - t.uv[0], s1 = at[1] - at[0], s2 = at[2] - at[0];
-    const Vec2f u = (s1 * e2.y - s2 * e1.y) * float(1 / t.area), v = (s2 * e1.x - s1 * e2.x) * float(1 / t.area);
+    const Vec2f u = (s1 * e2.y - s2 * e1.y) * float(1 / t.area),
+                v = (s2 * e1.x - s1 * e2.x) * float(1 / t.area);
     const float size = length(u);
     if (!(size > 0)) return;
     const Vec2f along = u * (1 / size);
@@ -235,15 +238,21 @@ void bakeTexture(const TextureShape& shape, const TextureResult& result,
     if (!uv || uv->width != 2 || shape.triangles.empty())
         throw Error(ErrorCode::Unusable, shape.name + ": has no texture coordinates to bake onto");
     const std::vector<SampleImage> images = imagesOf(samples);
-    const Bake bake{shape,  result, images, bakedMap(path, samples.front()), trianglesOf(shape),
-                    cornersOf(shape, result, images, ctx), size};
+    const Bake bake{shape,
+                    result,
+                    images,
+                    bakedMap(path, samples.front()),
+                    trianglesOf(shape),
+                    cornersOf(shape, result, images, ctx),
+                    size};
     std::size_t outside = 0;
     const auto tiles = tilesOf(bake.triangles, path.find(kTileWord) != std::string::npos, outside);
     if (tiles.empty())
         throw Error(ErrorCode::Unusable, shape.name + ": no face has texture coordinates inside the picture");
     if (tiles.size() > std::size_t(kMostTiles))
         throw Error(ErrorCode::Unusable, shape.name + ": its texture coordinates span " +
-                                             std::to_string(tiles.size()) + " tiles; at most 100 are written");
+                                             std::to_string(tiles.size()) +
+                                             " tiles; at most 100 are written");
     requireMemory(ctx, double(size) * size * (12 + 4.0 * bake.map.channels) * 2, path, "lower `bakeSize`");
     noteBake(bake, path, tiles.size(), outside, ctx);
     for (const auto& [tile, triangles] : tiles) {

@@ -17,9 +17,9 @@ const SampleMap& bakedMap(const std::string& path, const TextureSample& sample);
 
 /// Bakes a map onto the target's own texture coordinates (attribute `uv`): every pixel inside a triangle
 /// takes the value at the coordinate that the triangle's corners give there (texture/corner_coordinates.h),
-/// by cubic convolution; charts are padded by kBakePadding pixels, the rest is 0. Where <UDIM> is in the path,
-/// a picture for each tile that a triangle reaches, 1001 + u + 10 v; else what lies beyond 0..1 is left out
-/// with a warning. A map named `normal` is rotated from the sample's axes to those of the target's own
+/// by cubic convolution; charts are padded by kBakePadding pixels, the rest is 0. Where <UDIM> is in the
+/// path, a picture for each tile that a triangle reaches, 1001 + u + 10 v; else what lies beyond 0..1 is left
+/// out with a warning. A map named `normal` is rotated from the sample's axes to those of the target's own
 /// coordinates.
 /// @param bits  of .png, 8 or 16; .exr holds floats
 /// @throw Error Unusable (no `uv`, no face inside, more than 100 tiles), Memory, Io

@@ -57,8 +57,9 @@ std::vector<Vec3f> siteDirections(const TextureShape& shape, const DirectionSour
                                   const RunContext& ctx) {
     if (source.kind == Kind::Automatic)
         throw Error(ErrorCode::Unusable,
-                    shape.name + ": `direction` curvature is not determined at the sites of a texture yet; "
-                                 "give an axis, around an axis, radial, a grid or strokes");
+                    shape.name +
+                        ": `direction` curvature is not determined at the sites of a texture yet; "
+                        "give an axis, around an axis, radial, a grid or strokes");
     if (source.kind == Kind::Strokes) return strokeDirections(shape, source.strokes);
     const Vec3d middle = middleOf(shape);
     std::function<Vec3d(const Vec3d&)> reader = [&](const Vec3d&) { return source.axis; };

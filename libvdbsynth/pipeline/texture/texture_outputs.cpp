@@ -55,9 +55,10 @@ void requireOutputPaths(const std::vector<std::string>& paths, const TextureOutp
         const bool written = extensionOf(path) == "vdb" || isPicture(path) ||
                              (writableMeshFormatOf(path, format) && format != MeshFormat::Stl);
         if (!written)
-            throw Error(ErrorCode::InvalidOption, path + (extensionOf(path) == "stl" ? ": .stl has no colours"
-                                                                                     : ": unknown extension") +
-                                                      "; outputs of texturing are " + kTextureExtensions);
+            throw Error(ErrorCode::InvalidOption,
+                        path +
+                            (extensionOf(path) == "stl" ? ": .stl has no colours" : ": unknown extension") +
+                            "; outputs of texturing are " + kTextureExtensions);
         pictures = pictures || isPicture(path);
         if (isPicture(path) && !options.bake)
             throw Error(ErrorCode::InvalidOption,
@@ -98,7 +99,8 @@ Attributes textureAttributes(const TextureShape& shape, const TextureResult& res
         attributes.push_back(std::move(values));
     }
     Attribute u = columnOf("source_u", 1, count), v = columnOf("source_v", 1, count),
-              exemplar = columnOf("source_exemplar", 1, count), tangent = columnOf("source_tangent", 3, count);
+              exemplar = columnOf("source_exemplar", 1, count),
+              tangent = columnOf("source_tangent", 3, count);
     for (std::size_t e = 0; e < count; ++e) {
         const std::size_t site = shape.siteOf[e];
         u.values[e] = result.sites.coordinate[site].x;
@@ -111,7 +113,8 @@ Attributes textureAttributes(const TextureShape& shape, const TextureResult& res
     const std::vector<char>& blended = result.sites.blended;
     if (std::find_if(blended.begin(), blended.end(), [](char b) { return b != 0; }) != blended.end()) {
         attributes.push_back(columnOf("source_blended", 1, count));
-        for (std::size_t e = 0; e < count; ++e) attributes.back().values[e] = blended[shape.siteOf[e]] ? 1 : 0;
+        for (std::size_t e = 0; e < count; ++e)
+            attributes.back().values[e] = blended[shape.siteOf[e]] ? 1 : 0;
     }
     return attributes;
 }

@@ -43,7 +43,8 @@ MeshPictures picturesOf(const TextureSample& sample) {
     MeshPictures pictures;
     pictures.name = sample.name;
     pictures.repeats = sample.image.tileable;
-    pictures.colour = pictureOf(sample.image, [](const float* from, float* rgb) { std::copy(from, from + 3, rgb); });
+    pictures.colour =
+        pictureOf(sample.image, [](const float* from, float* rgb) { std::copy(from, from + 3, rgb); });
     const SampleMap *rough = mapNamed(sample, "roughness"), *metal = mapNamed(sample, "metallic"),
                     *normal = mapNamed(sample, "normal");
     if (rough || metal)
@@ -124,10 +125,12 @@ void writePictured(const TextureShape& shape, const TextureResult& result,
                    const std::vector<TextureSample>& samples, const std::string& path,
                    const std::string& temporary, const RunContext& ctx) {
     notePictures(shape, samples, path, ctx);
-    TexturedMesh textured = texturedMeshOf(
-        shape, result, samples, withOwnAttributes(shape, textureAttributes(shape, result, samples)), path, ctx);
+    TexturedMesh textured =
+        texturedMeshOf(shape, result, samples,
+                       withOwnAttributes(shape, textureAttributes(shape, result, samples)), path, ctx);
     if (extensionOf(path) == "obj") {
-        for (const TextureSample& sample : samples) textured.materials.push_back({sample.name, "", "", "", false});
+        for (const TextureSample& sample : samples)
+            textured.materials.push_back({sample.name, "", "", "", false});
         message(ctx, MessageLevel::Note,
                 path + ": holds colours and texture coordinates, not the picture; .glb embeds it");
         return writeTexturedObj(temporary, textured);

@@ -26,7 +26,8 @@ GridPtr pointsOf(const TextureShape& shape, const TextureResult& result,
     cloud.normals = elementNormals(shape);
     cloud.attributes = textureAttributes(shape, result, samples);
     for (const Attribute& own : shape.attributes)
-        if (own.name != "Alpha" && own.name != "N" && own.name != "P" && !findAttribute(cloud.attributes, own.name))
+        if (own.name != "Alpha" && own.name != "N" && own.name != "P" &&
+            !findAttribute(cloud.attributes, own.name))
             cloud.attributes.push_back(own);
     const double voxel = options.model.voxelSize > 0 ? options.model.voxelSize : kPointVoxels * result.texel;
     return pointGrid(cloud, voxel, ctx);
@@ -113,7 +114,7 @@ void writeTexturedVdb(const TextureShape& shape, const TextureResult& result,
     for (const char* name : {"source_u", "source_v", "source_exemplar"}) values.push_back({name, 1});
     std::vector<GridPtr> grids{model.grid};
     for (GridPtr& grid : bandGrids(
-             *model.grid, values, [&](const Vec3d& world, float* out) { chart.read(world, out); }, ctx))
+             *model.grid, values, [&](const Vec3d&world, float*out) { chart.read(world, out); }, ctx))
         grids.push_back(grid);
     for (const GridPtr& other : model.attributes) {
         const bool replaced = std::any_of(grids.begin(), grids.end(),

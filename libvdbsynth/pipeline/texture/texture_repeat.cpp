@@ -83,9 +83,9 @@ void readCoordinates(const std::string& path, TextureMap& map) {
         const std::size_t site = map.shape.siteOf[e];
         const float number = exemplar.values[e];
         if (!(number >= -1 && number < float(map.samples.size()) && number == std::floor(number)))
-            throw Error(ErrorCode::BadData,
-                        path + ": a source_exemplar of " + roundedText(double(number), 6) + "; it has " +
-                            std::to_string(map.samples.size()) + " samples");
+            throw Error(ErrorCode::BadData, path + ": a source_exemplar of " +
+                                                roundedText(double(number), 6) + "; it has " +
+                                                std::to_string(map.samples.size()) + " samples");
         sites.sample[site] = std::int32_t(number);
         sites.coordinate[site] = {u.values[e], v.values[e]};
         sites.tangent[site] = tangentOf(map.shape.normal[site], &tangent.values[3 * e]);
@@ -95,7 +95,8 @@ void readCoordinates(const std::string& path, TextureMap& map) {
 void noteBlended(const TextureMap& map, const RunContext& ctx) {
     const Attribute* blended = findAttribute(map.shape.attributes, kBlended);
     if (!blended || blended->width != 1) return;
-    const auto count = std::count_if(blended->values.begin(), blended->values.end(), [](float v) { return v != 0; });
+    const auto count =
+        std::count_if(blended->values.begin(), blended->values.end(), [](float v) { return v != 0; });
     if (count > 0)
         message(ctx, MessageLevel::Note,
                 map.shape.name + ": " + std::to_string(count) +
@@ -125,8 +126,8 @@ std::vector<std::string> sampleComments(const TextureResult& result,
     std::vector<std::string> lines{kTexelKey + exactText(result.texel)};
     for (const TextureSample& sample : samples)
         lines.push_back(kSampleKey + std::to_string(sample.image.width) + ' ' +
-                        std::to_string(sample.image.height) + (sample.image.tileable ? " tile " : " mirror ") +
-                        sample.name);
+                        std::to_string(sample.image.height) +
+                        (sample.image.tileable ? " tile " : " mirror ") + sample.name);
     for (std::size_t m = 1; m < samples.front().maps.size(); ++m)
         lines.push_back(kMapKey + samples.front().maps[m].name);
     return lines;
@@ -154,9 +155,9 @@ TextureMap readTextureMap(const std::string& path, const RunContext& ctx) {
 
 void repeatTexture(TextureMap& map, std::vector<TextureSample>& samples, const RunContext& ctx) {
     if (samples.size() != map.samples.size())
-        throw Error(ErrorCode::ShapeMismatch,
-                    map.shape.name + ": was textured with " + std::to_string(map.samples.size()) +
-                        " samples; " + std::to_string(samples.size()) + " are given after it");
+        throw Error(ErrorCode::ShapeMismatch, map.shape.name + ": was textured with " +
+                                                  std::to_string(map.samples.size()) + " samples; " +
+                                                  std::to_string(samples.size()) + " are given after it");
     noteLostMaps(map, samples.front(), ctx);
     std::vector<Vec2f> ratio;
     for (std::size_t s = 0; s < samples.size(); ++s) {

@@ -14,10 +14,29 @@ namespace vdbsynth {
 namespace {
 
 // Attributes that texturing writes itself, and those with a meaning of their own.
-const std::set<std::string> kTakenNames{
-    "Cd", "Alpha", "uv", "N", "P",  "x",  "y",        "z",        "nx",              "ny",
-    "nz", "red",   "s",  "t", "green", "blue", "source_u", "source_v", "source_exemplar", "source_tangent",
-    "source_blended", "surface", ""};
+const std::set<std::string> kTakenNames{"Cd",
+                                        "Alpha",
+                                        "uv",
+                                        "N",
+                                        "P",
+                                        "x",
+                                        "y",
+                                        "z",
+                                        "nx",
+                                        "ny",
+                                        "nz",
+                                        "red",
+                                        "s",
+                                        "t",
+                                        "green",
+                                        "blue",
+                                        "source_u",
+                                        "source_v",
+                                        "source_exemplar",
+                                        "source_tangent",
+                                        "source_blended",
+                                        "surface",
+                                        ""};
 
 Raster readImage(const std::string& path, const RunContext& ctx) {
     Raster raster = readRaster(path, {}, ctx);
@@ -32,8 +51,8 @@ Raster readImage(const std::string& path, const RunContext& ctx) {
     if (range.infinite > 0) throw Error(ErrorCode::BadData, path + ": holds infinite values");
     if (range.missing > 0)
         throw Error(ErrorCode::Unusable,
-                    path + ": " + std::to_string(range.missing / std::size_t(raster.channels)) + " of its " + sides() +
-                        " pixels have no data (alpha 0 or NaN); crop them off or paint them");
+                    path + ": " + std::to_string(range.missing / std::size_t(raster.channels)) + " of its " +
+                        sides() + " pixels have no data (alpha 0 or NaN); crop them off or paint them");
     return raster;
 }
 
@@ -80,7 +99,8 @@ TextureSample readOne(const SampleFiles& files, const RunContext& ctx) {
 
 void decideTiling(TextureSample& sample, Tiling tiling, const RunContext& ctx) {
     const double mismatch = borderMismatch(sample.image);
-    sample.image.tileable = tiling == Tiling::Yes || (tiling == Tiling::Auto && mismatch <= kTileableMismatch);
+    sample.image.tileable =
+        tiling == Tiling::Yes || (tiling == Tiling::Auto && mismatch <= kTileableMismatch);
     message(ctx, MessageLevel::Detail,
             sample.name + ": its opposite borders differ " + roundedText(mismatch, 3) +
                 " times as much as neighbouring rows; it is used as " +

@@ -34,9 +34,8 @@ void uniteElements(TextureShape& shape) {
     };
     std::vector<std::uint32_t> order(shape.points.size()), first(order.size());
     std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return key(a) != key(b) ? key(a) < key(b) : a < b;
-    });
+    std::sort(order.begin(), order.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
     for (std::size_t k = 0; k < order.size(); ++k)
         first[order[k]] = k > 0 && key(order[k]) == key(order[k - 1]) ? first[order[k - 1]] : order[k];
     shape.siteOf.resize(order.size());
@@ -74,7 +73,7 @@ void normalsFrom(TextureShape& shape, const std::vector<Vec3f>& normals) {
     for (std::size_t i = 0; i < sums.size(); ++i)
         if (length(sums[i]) > 1e-30)
             shape.normal[i] = std::abs(length(sums[i]) - 1) < 1e-6 ? cast<float>(sums[i])
-                                                                  : cast<float>(normalized(sums[i]));
+                                                                   : cast<float>(normalized(sums[i]));
     for (std::size_t i = 0; i < normals.size(); ++i)
         if (!usable(shape.normal[shape.siteOf[i]]) && usable(normals[i]))
             shape.normal[shape.siteOf[i]] = unit(normals[i]);
@@ -152,8 +151,7 @@ void takePoints(TextureShape& shape, const std::string& path, const ModelOptions
         message(ctx, MessageLevel::Note,
                 path + ": " + std::to_string(file.invalid) + " points without finite coordinates left out");
     if (isMeshPath(path) && !holdsPoints(path))
-        message(ctx, MessageLevel::Note,
-                path + ": its faces are left out; `as` mesh textures them");
+        message(ctx, MessageLevel::Note, path + ": its faces are left out; `as` mesh textures them");
     scale(file.cloud.points, file.cloud.origin, options.unitScale);
     shape.origin = file.cloud.origin;
     shape.points = std::move(file.cloud.points);

@@ -58,10 +58,10 @@ GridPtr pointGrid(const PointCloud& cloud, double voxelSize, const RunContext& c
         for (const Vec3f& p : cloud.points) positions.push_back(toVec(cloud.origin + cast<double>(p)));
         const auto transform = openvdb::math::Transform::createLinearTransform(voxelSize);
         const points::PointAttributeVector<openvdb::Vec3d> wrapped(positions);
-        const IndexGrid::Ptr index =
-            openvdb::tools::createPointIndexGrid<IndexGrid>(wrapped, *transform);
+        const IndexGrid::Ptr index = openvdb::tools::createPointIndexGrid<IndexGrid>(wrapped, *transform);
         const points::PointDataGrid::Ptr grid =
-            points::createPointDataGrid<points::NullCodec, points::PointDataGrid>(*index, wrapped, *transform);
+            points::createPointDataGrid<points::NullCodec, points::PointDataGrid>(*index, wrapped,
+                                                                                  *transform);
         grid->setName("points");
         if (cloud.normals.size() == cloud.points.size()) {
             std::vector<openvdb::Vec3f> normals;

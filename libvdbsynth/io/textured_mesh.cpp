@@ -23,15 +23,15 @@ std::vector<std::size_t> byMaterial(const TexturedMesh& textured) {
     return order;
 }
 
-// Vertices of their own for corners with other coordinates; triangles in the order of their materials.
-TexturedMesh splitAtCorners(const TexturedMesh& from) {
-    TexturedMesh split;
-    split.materials = from.materials;
-    split.mesh.origin = from.mesh.origin;
+// The triangles of one material, with vertices of their own for corners with other coordinates.
+TexturedMesh partOf(const TexturedMesh& from, std::uint32_t material) {
+    TexturedMesh part;
+    part.mesh.origin = from.mesh.origin;
     std::map<std::tuple<std::uint32_t, float, float>, std::uint32_t> numbers;
     std::vector<std::size_t> kept;
     std::vector<float> uv;
-    for (std::size_t t : byMaterial(from)) {
+    for (std::size_t t = 0; t < from.mesh.triangles.size(); ++t) {
+        if (from.pictures[t] != material) continue;
         Triangle made{};
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t v = from.mesh.triangles[t][k];
@@ -42,19 +42,19 @@ TexturedMesh splitAtCorners(const TexturedMesh& from) {
             kept.push_back(v);
             uv.insert(uv.end(), {at.x, at.y});
         }
-        split.mesh.triangles.push_back(made);
-        split.pictures.push_back(from.pictures[t]);
+        part.mesh.triangles.push_back(made);
+        part.pictures.push_back(material);
     }
     for (std::size_t v : kept) {
-        split.mesh.points.push_back(from.mesh.points[v]);
-        split.normals.push_back(from.normals[v]);
+        part.mesh.points.push_back(from.mesh.points[v]);
+        part.normals.push_back(from.normals[v]);
     }
-    split.mesh.attributes = selectRows(from.mesh.attributes, kept);
-    split.mesh.attributes.erase(std::remove_if(split.mesh.attributes.begin(), split.mesh.attributes.end(),
-                                               [](const Attribute& a) { return a.name == "uv"; }),
-                                split.mesh.attributes.end());
-    split.mesh.attributes.push_back({"uv", 2, std::move(uv)});
-    return split;
+    Attributes& attributes = part.mesh.attributes = selectRows(from.mesh.attributes, kept);
+    attributes.erase(std::remove_if(attributes.begin(), attributes.end(),
+                                    [](const Attribute& a) { return a.name == "uv"; }),
+                     attributes.end());
+    attributes.push_back({"uv", 2, std::move(uv)});
+    return part;
 }
 
 void appendRow(std::string& text, const char* key, const float* values, std::size_t count) {
@@ -90,7 +90,12 @@ std::string vertexRows(const TexturedMesh& textured) {
 
 void writeTexturedGltf(const std::string& path, bool binary, const TexturedMesh& textured) {
     requireMesh(textured.mesh, path);
-    writeWholeFile(path, texturedGltfBytes(splitAtCorners(textured), binary));
+    std::vector<TexturedMesh> parts;
+    for (std::uint32_t material = 0; material < textured.materials.size(); ++material) {
+        parts.push_back(partOf(textured, material));
+        if (parts.back().pictures.empty()) parts.pop_back();
+    }
+    writeWholeFile(path, texturedGltfBytes(parts, textured.materials, binary));
 }
 
 void writeTexturedObj(const std::string& path, const TexturedMesh& textured) {

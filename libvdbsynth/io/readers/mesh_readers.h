@@ -20,7 +20,8 @@ MeshContent readStl(const std::string& path, const std::string& content, const R
 
 // The content of a .glb or .gltf file. The same mesh gives the same bytes.
 std::string gltfBytes(const Mesh& mesh, bool binary);
-// The same with pictures: the mesh has one attribute `uv` a vertex, triangles of one material stand together.
-std::string texturedGltfBytes(const TexturedMesh& textured, bool binary);
+// The same with pictures: each part shows those of its first triangle, and has one attribute `uv` a vertex.
+std::string texturedGltfBytes(const std::vector<TexturedMesh>& parts,
+                              const std::vector<MeshPictures>& materials, bool binary);
 
 }  // namespace vdbsynth

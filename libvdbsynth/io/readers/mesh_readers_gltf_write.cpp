@@ -181,20 +181,18 @@ std::string gltfBytes(const Mesh& mesh, bool binary) {
     return finished(model, {primitive}, mesh.origin, binary);
 }
 
-std::string texturedGltfBytes(const TexturedMesh& textured, bool binary) {
+std::string texturedGltfBytes(const std::vector<TexturedMesh>& parts,
+                              const std::vector<MeshPictures>& materials, bool binary) {
     tinygltf::Model model = startedModel();
-    const Mesh& mesh = textured.mesh;
-    const tinygltf::Primitive vertices = addVertices(model, mesh, textured.normals, /* pictured= */ true);
     std::vector<tinygltf::Primitive> primitives;
-    const std::size_t count = mesh.triangles.size();
-    for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
-        while (end < count && textured.pictures[end] == textured.pictures[begin]) ++end;
-        primitives.push_back(vertices);
-        primitives.back().indices = addTriangles(model, &mesh.triangles[begin], end - begin);
-        primitives.back().material = int(textured.pictures[begin]);
+    for (const TexturedMesh& part : parts) {
+        primitives.push_back(addVertices(model, part.mesh, part.normals, /* pictured= */ true));
+        primitives.back().indices =
+            addTriangles(model, part.mesh.triangles.data(), part.mesh.triangles.size());
+        primitives.back().material = int(part.pictures.front());
     }
-    for (const MeshPictures& pictures : textured.materials) addMaterial(model, pictures);
-    return finished(model, primitives, mesh.origin, binary);
+    for (const MeshPictures& pictures : materials) addMaterial(model, pictures);
+    return finished(model, primitives, parts.front().mesh.origin, binary);
 }
 
 }  // namespace vdbsynth

@@ -103,7 +103,7 @@ void decideTiling(TextureSample& sample, Tiling tiling, const RunContext& ctx) {
         tiling == Tiling::Yes || (tiling == Tiling::Auto && mismatch <= kTileableMismatch);
     message(ctx, MessageLevel::Detail,
             sample.name + ": its opposite borders differ " + roundedText(mismatch, 3) +
-                " times as much as neighbouring rows; it is used as " +
+                " times as much as most neighbouring rows; it is used as " +
                 (sample.image.tileable ? "tileable" : "not tileable"));
 }
 
@@ -121,11 +121,13 @@ double difference(const SampleImage& image, bool columns, int a, int b) {
 
 double mismatchAcross(const SampleImage& image, bool columns) {
     const int count = columns ? image.width : image.height;
-    double inside = 0;
-    for (int i = 0; i + 1 < count; ++i) inside += difference(image, columns, i, i + 1);
-    const double border = difference(image, columns, 0, count - 1), mean = inside / std::max(1, count - 1);
-    if (border == 0) return 0;
-    return mean > 0 ? border / mean : std::numeric_limits<double>::infinity();
+    std::vector<double> inside;
+    for (int i = 0; i + 1 < count; ++i) inside.push_back(difference(image, columns, i, i + 1));
+    const double border = difference(image, columns, 0, count - 1);
+    if (border == 0 || inside.empty()) return 0;
+    const auto high = inside.begin() + std::ptrdiff_t((inside.size() - 1) * 9 / 10);
+    std::nth_element(inside.begin(), high, inside.end());
+    return *high > 0 ? border / *high : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace

@@ -38,11 +38,11 @@ enum class Tiling {
 /// The smallest side of a sample. [texels]
 inline constexpr int kSmallestSample = 4;
 /// Up to this borderMismatch a sample counts as tileable.
-inline constexpr double kTileableMismatch = 1.3;
+inline constexpr double kTileableMismatch = 1.1;
 
-/// How badly opposite borders match: the mean squared difference of the first and the last column, over that
-/// of neighbouring columns; the same for rows; the larger of both. 1 where the border looks like any other
-/// place, infinite where only the border differs.
+/// How badly opposite borders match: the squared difference of the first and the last column, over that which
+/// nine tenths of neighbouring columns do not exceed; the same for rows; the larger of both. Up to 1 where
+/// the border looks like any other place, infinite where only the border differs.
 double borderMismatch(const SampleImage& image);
 
 /// Reads samples (io/raster_file.h). Colours are always three channels, a grey one three times the same;

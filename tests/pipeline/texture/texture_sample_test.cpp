@@ -37,7 +37,7 @@ TEST_CASE("borderMismatch: whole waves tile, broken ones do not", "[pipeline][fa
     CHECK(borderMismatch(waves(32, 9.3)) > kTileableMismatch);
     CHECK(borderMismatch({4, 4, 1, false, std::vector<float>(16, 1.f)}) == 0);
     SampleImage step{4, 4, 1, false, std::vector<float>(16, 0.f)};
-    step.values[3] = 1;
+    step.values = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
     CHECK(borderMismatch(step) > kTileableMismatch);
 }
 

@@ -118,4 +118,8 @@ std::string fixedText(double value, int digits) {
     return text(value, std::chars_format::fixed, std::clamp(digits, 0, 17));
 }
 
+std::string countText(std::size_t count, const std::string& what) {
+    return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
 }  // namespace vdbsynth

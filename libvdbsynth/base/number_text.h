@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -31,6 +32,9 @@ std::string exactText(float value);
 
 /// With `digits` significant digits (1 to 17), without zeros at the end, like printf's %.*g: for people.
 std::string roundedText(double value, int digits);
+
+/// How many of something, for messages: "1 point", "2 points".
+std::string countText(std::size_t count, const std::string& what);
 
 /// With `digits` (0 to 17) digits after the point, like printf's %.*f: for tables and measures.
 std::string fixedText(double value, int digits);

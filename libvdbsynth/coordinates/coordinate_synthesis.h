@@ -9,12 +9,15 @@
 namespace vdbsynth {
 
 struct CoordinateOptions {
-    int passes = 2;          ///< of correction on every level, 0..20
-    int coarsePasses = 8;    ///< on the coarsest level, which begins with random coordinates, 0..100
-    int similar = 2;         ///< texels like a candidate that are tried beside it (k of k-coherence), 0..8
-    double coherence = 0.1;  ///< 0..10: how much more a jump must improve than a continuation, as a share of
-                             ///< its cost
-    int levels = 0;          ///< of the hierarchy, 1..12; 0: as many as the sample's size asks for
+    int passes = 2;        ///< of correction on every level, 0..20
+    int coarsePasses = 4;  ///< on the coarsest level, which begins with charts, 0..100
+    int similar = 2;       ///< texels like a candidate that are tried beside it (k of k-coherence), 0..8
+    double coherence = 1;  ///< 0..10: how much more a jump must improve than a continuation, as a share of
+                           ///< its cost
+    double uniformity = 0.25;  ///< 0..10: how much a place of the sample costs that is used twice as often as
+                               ///< others, as a share of the features' variance
+    double histogram = 0.75;   ///< 0..10: the same for values that are used twice as often as in the sample
+    int levels = 0;            ///< of the hierarchy, 1..12; 0: as many as the sample's size asks for
 };
 
 /// @throw Error InvalidOption (a field out of its range)
@@ -47,8 +50,8 @@ struct CoordinateResult {
 /// appearances at four taps a step away, each read from the sample where the neighbours in that quadrant
 /// continue to (site_chart.h), the mean of them. Candidates are the continuations of the neighbours' own
 /// coordinates, the site's own, and `similar` texels like each [ashikhmin2001; tong2002, k-coherence]. The
-/// one with the nearest feature is taken; ties go to the first. The coarsest level starts with random
-/// coordinates.
+/// one with the nearest feature is taken; ties go to the first. On the coarsest
+/// level whole charts of the sample are laid first (coordinate_charts.h).
 ///
 /// Sites are updated in classes of which no two are neighbours, those of a class at once, so that the order
 /// within it means nothing. Sites denser than the texels continue the nearest coarser site.

@@ -16,13 +16,6 @@ void cubicWeights(float t, float* w) {
 
 }  // namespace
 
-int foldedTexel(int x, int size, bool wraps) {
-    const int period = wraps ? size : 2 * size;
-    x %= period;
-    if (x < 0) x += period;
-    return x < size ? x : period - 1 - x;
-}
-
 const float* nearestTexel(const SampleImage& image, const Vec2f& at) {
     return image.texel(foldedTexel(int(std::floor(at.x)), image.width, image.tileable),
                        foldedTexel(int(std::floor(at.y)), image.height, image.tileable));

@@ -21,7 +21,13 @@ struct SampleImage {
 };
 
 /// The lattice index of a texel outside 0..size-1: wrapped or mirrored (-1 is 0).
-int foldedTexel(int x, int size, bool wraps);
+inline int foldedTexel(int x, int size, bool wraps) {
+    if (x >= 0 && x < size) return x;
+    const int period = wraps ? size : 2 * size;
+    x %= period;
+    if (x < 0) x += period;
+    return x < size ? x : period - 1 - x;
+}
 
 /// The nearest texel's values at a coordinate. @return [channels], valid as long as the image
 const float* nearestTexel(const SampleImage& image, const Vec2f& at);

@@ -95,14 +95,31 @@ IndexBox imageOf(const Affine& map, const IndexBox& box) {
     return image;
 }
 
-// The field at the result's voxels, as inVoxels.
-BrickField sampledInVoxels(const BrickField& field, const Affine& toField, const IndexBox& box,
-                           const RebuildOptions& options, const RunContext& ctx) {
-    const float scale = 1 / options.voxelSize, limit = options.band;
-    return BrickField::fromVoxels(box, ctx, [&](const Index3& p) {
-        const Vec3d place = transformed(toField, {double(p.x), double(p.y), double(p.z)});
-        return std::clamp(sampleTrilinear(field, cast<float>(place)) * scale, -limit, limit);
+// The field at the result's voxels, in its own unit.
+BrickField sampledAt(const BrickField& field, const Affine& toField, const IndexBox& box,
+                     const RunContext& ctx) {
+    return BrickField::generate(box, ctx, [&](const IndexBox& brick, float* samples) {
+        float constant = 0;
+        if (field.constantIn(imageOf(toField, brick).expanded(1), constant)) {
+            std::fill_n(samples, BrickField::kSamples, constant);
+            return;
+        }
+        forEachVoxel(brick, [&](const Index3& p) {
+            const Vec3d place = transformed(toField, {double(p.x), double(p.y), double(p.z)});
+            *samples++ = sampleTrilinear(field, cast<float>(place));
+        });
     });
+}
+
+// Where the result's voxels are no larger, the zero level is that of the samples at them: detail of a voxel
+// of the field has sides that a mesh in its voxels does not agree with.
+BrickField refinedPart(const FieldReader& read, const LatticeMap& map, const IndexBox& part,
+                       const RebuildOptions& options, const RunContext& ctx) {
+    const FieldReader finer = [&](const IndexBox& box) {
+        const std::shared_ptr<const BrickField> field = read(imageOf(map.toField, box).expanded(1));
+        return std::make_shared<const BrickField>(sampledAt(*field, map.toField, box, ctx));
+    };
+    return rebuiltPart(finer, part, options, ctx);
 }
 
 BrickField resampledPart(const FieldReader& read, const LatticeMap& map, const IndexBox& part,
@@ -110,7 +127,8 @@ BrickField resampledPart(const FieldReader& read, const LatticeMap& map, const I
     const int rounds = int(std::ceil(options.halfWidth));
     const IndexBox reach = imageOf(map.toField, part.expanded(rounds + 3)).expanded(1);
     const std::shared_ptr<const BrickField> field = read(samplesFor(reach));
-    const BrickField own = sampledInVoxels(*field, map.toField, part.expanded(1), options, ctx);
+    const IndexBox needed = part.expanded(1);
+    const BrickField own = inVoxels(sampledAt(*field, map.toField, needed, ctx), needed, options, ctx);
     Mesh mesh = zeroLevel(*field, reach, options.facing, ctx);
     if (mesh.faceCount() == 0)
         return BrickField(part, own.at(part.min) < 0 ? -options.halfWidth : options.halfWidth);
@@ -126,7 +144,7 @@ BrickField resampledPart(const FieldReader& read, const LatticeMap& map, const I
 
 // Voxels of the field along one of the result's, at most.
 double coarsening(const Affine& toField) {
-    double most = 1;
+    double most = 0;
     for (std::size_t column = 0; column < 12; column += 4)
         most = std::max(most, length(Vec3d{toField[column], toField[column + 1], toField[column + 2]}));
     return most;
@@ -137,11 +155,13 @@ double coarsening(const Affine& toField) {
 void resampleBand(const FieldReader& read, const LatticeMap& map, const IndexBox& box,
                   const RebuildOptions& options, const PartTaker& take, const RunContext& ctx) {
     constexpr double kFieldVoxels = 1024;  // along a part: bounds the memory of its field and mesh
-    const int side = std::max(16, int(std::min(176.0, kFieldVoxels / coarsening(map.toField))));
+    const double coarser = coarsening(map.toField);
+    const bool finer = coarser < 1 + 1e-6;
+    const int side = std::max(16, int(std::min(176.0, kFieldVoxels / std::max(1.0, coarser))));
     const std::vector<IndexBox> parts = partsOf(box, side, side);
     Stage stage(ctx, "resampling", parts.size());
     for (const IndexBox& part : parts) {
-        take(resampledPart(read, map, part, options, ctx));
+        take((finer ? refinedPart : resampledPart)(read, map, part, options, ctx));
         stage.advance();
     }
 }

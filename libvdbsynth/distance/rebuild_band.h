@@ -44,9 +44,9 @@ struct LatticeMap {
     Affine fromField;  ///< its inverse
 };
 
-/// rebuildBand on another lattice, of any scale, rotation or shear: the zero level is meshed in the field's
-/// voxels, distances to it are measured in the result's, signs are those of the trilinear field. So a closed
-/// void stays one as long as a voxel of the result lies in it.
+/// rebuildBand on another lattice, of any scale, rotation or shear: the zero level is meshed in the voxels of
+/// the field or of the result, whichever are smaller, distances to it are measured in the result's, signs are
+/// those of the trilinear field. So a closed void stays one as long as a voxel of the result lies in it.
 /// @param options  its voxelSize, keepDistances and band are in voxels of the result
 /// @param box      of the result's index space: what the band may touch
 /// @throw Error Cancelled

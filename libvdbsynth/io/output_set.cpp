@@ -148,6 +148,9 @@ void OutputSet::open(const std::string& path) {
     const int reason = errno;
     if (file < 0) {
         namesInUse().giveBack(temporary);
+        // The folder is there: one of the system's own, as /proc.
+        if (reason == ENOENT && ::stat(folder.c_str(), &status) == 0)
+            throw Error(ErrorCode::Io, path + ": cannot be written: " + folder + " takes no new files");
         errno = reason;
         failIo(path, "cannot be written");
     }

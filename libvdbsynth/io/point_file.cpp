@@ -1,6 +1,7 @@
 #include "libvdbsynth/io/point_file.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/geometry/local_points.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/points/point_readers.h"
@@ -65,8 +66,8 @@ Cleaned clean(PointContent& cloud) {
 void sayCleaned(const std::string& path, const Cleaned& cleaned, std::size_t points, const RunContext& ctx) {
     if (cleaned.tooFar > 0)
         message(ctx, MessageLevel::Warning,
-                path + ": " + std::to_string(cleaned.tooFar) + " outliers of " + std::to_string(points) +
-                    " points left out: their coordinates are over 3.4e38");
+                path + ": " + countText(cleaned.tooFar, "outlier") + " of " + countText(points, "point") +
+                    " left out: their coordinates are over 3.4e38");
     if (cleaned.bare > 0)
         message(ctx, MessageLevel::Note,
                 path + ": its normals left out, for " + std::to_string(cleaned.bare) +

@@ -18,6 +18,9 @@ struct RasterField {
     std::array<Vec3d, 3> axes = kWorldAxes;  ///< unit directions of the voxels, at right angles
     /// Share of an image's pixels whose heights lie farther than a voxel from the surface.
     double lostShare = 0;
+    /// [voxels] of a volume's solid samples, within the domain, if they have only two sides; else 0.
+    double solidVolume = 0;
+    std::string keepsMore;    ///< begins what would keep more of that volume
     std::string description;  ///< the choices made, one line
 };
 

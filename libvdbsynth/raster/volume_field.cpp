@@ -107,6 +107,22 @@ bool isOneOf(const std::vector<LabelRange>& labels, float value) {
     return false;
 }
 
+// [voxels] of some samples; those at the ends of the lattice reach half a voxel out.
+template <typename Solid>
+double volumeWhere(const Raster& raster, const Vec3d& cell, const Solid& solid) {
+    const double smallest = std::min({cell.x, cell.y, cell.z});
+    const auto side = [&](int i, int axis) {
+        const double inner = cell[axis] / smallest;
+        const int ends = (i == 0 ? 1 : 0) + (i == raster.size[axis] - 1 ? 1 : 0);
+        return inner + ends * 0.5 * (1 - inner);
+    };
+    double volume = 0;
+    forEachVoxel(IndexBox::fromSize(raster.size), [&](const Index3& p) {
+        if (solid(raster.at(p.x, p.y, p.z))) volume += side(p.x, 0) * side(p.y, 1) * side(p.z, 2);
+    });
+    return volume;
+}
+
 // The field of the samples with one of some labels.
 BrickField labelField(const std::string& name, const Raster& raster, const RasterRange& range,
                       const std::vector<LabelRange>& labels, const RunContext& ctx) {
@@ -179,9 +195,17 @@ RasterField volumeField(const std::string& name, const Raster& given, const Volu
                         "`threshold` " + rounded(t) + ": no surface there; the values of " + name +
                             " range from " + rounded(range.minimum) + " to " + rounded(range.maximum));
         result.field = thresholdField(raster, range, t, ctx);
+        // More values are samples of something smooth.
+        if (range.distinct.size() == 2)
+            result.solidVolume = volumeWhere(raster, cell, [&](float value) { return double(value) > t; });
     } else {
-        result.field =
-            labelField(name, raster, range, chooseLabels(name, range, options, result.description), ctx);
+        const std::vector<LabelRange> labels = chooseLabels(name, range, options, result.description);
+        const auto solid = [&](float value) { return isOneOf(labels, value); };
+        result.solidVolume = volumeWhere(raster, cell, solid);
+        result.field = labelField(name, raster, range, labels, ctx);
+        if (range.distinct.size() == 2)
+            result.keepsMore =
+                "`threshold` " + rounded((range.minimum + range.maximum) / 2) + ", which smooths less, or ";
     }
     const bool inPlace = options.pixelSize <= 0 && options.pixelSides.x <= 0;
     placeField(name, raster, cell, inPlace, result, ctx);

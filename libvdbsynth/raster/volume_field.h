@@ -15,7 +15,8 @@ void validate(const VolumeOptions& options);
 /// smallest side, and sheared ones to cubes along the directions at right angles nearest to theirs. With a
 /// threshold the surface is that of trilinear interpolation. With labels, or for a volume of only two values
 /// (the larger is solid), the steps between voxels are smoothed under the constraint that every sample keeps
-/// its sign [whitaker2000], so volume fractions and thin parts are kept. Samples without data are outside.
+/// its sign [whitaker2000], so thin parts are kept; what is few samples thick loses volume (solidVolume
+/// tells). Samples without data are outside.
 /// @throw Error InvalidOption (threshold and labels), BadData (infinite values), EmptyInput, Unusable
 /// (neither was given; no surface at the threshold; no sample has such a label), Memory
 /// @par Cost    O(samples)   @par Repeats same bits for any number of threads

@@ -3,6 +3,7 @@
 #include <flann/algorithms/dist.h>
 #include <flann/algorithms/kdtree_single_index.h>
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -26,6 +27,34 @@ public:
 
 private:
     FeatureMatch mMatch;
+};
+
+// The nearest that are accepted, kept in order.
+class NearestSome : public flann::ResultSet<float> {
+public:
+    NearestSome(std::size_t count, const std::function<bool(std::int32_t)>& accepted)
+        : mCount(count), mAccepted(accepted) {}
+    bool full() const override { return mMatches.size() == mCount; }
+    void addPoint(float squared, std::size_t row) override {
+        const FeatureMatch match{std::int32_t(row), squared};
+        if (full() && !before(match, mMatches.back())) return;
+        if (!mAccepted(match.row)) return;
+        if (full()) mMatches.pop_back();
+        mMatches.insert(std::upper_bound(mMatches.begin(), mMatches.end(), match, before), match);
+    }
+    float worstDist() const override {
+        return full() ? mMatches.back().squared : std::numeric_limits<float>::max();
+    }
+    std::vector<FeatureMatch> take() { return std::move(mMatches); }
+
+private:
+    static bool before(const FeatureMatch& a, const FeatureMatch& b) {
+        return a.squared != b.squared ? a.squared < b.squared : a.row < b.row;
+    }
+
+    std::size_t mCount;
+    const std::function<bool(std::int32_t)>& mAccepted;
+    std::vector<FeatureMatch> mMatches;
 };
 
 float squaredBetween(const float* a, const float* b, std::size_t dimension) {
@@ -58,6 +87,16 @@ FeatureMatch FeatureIndex::nearest(const float* feature, float bound, float epsi
     flann::SearchParams params(flann::FLANN_CHECKS_UNLIMITED, epsilon, false);
     mImpl->tree->findNeighbors(result, feature, params);
     return result.match();
+}
+
+std::vector<FeatureMatch> FeatureIndex::nearestSome(const float* feature, std::size_t count,
+                                                    const std::function<bool(std::int32_t)>& accepted,
+                                                    float epsilon) const {
+    if (count == 0) return {};
+    NearestSome result(count, accepted);
+    flann::SearchParams params(flann::FLANN_CHECKS_UNLIMITED, epsilon, false);
+    mImpl->tree->findNeighbors(result, feature, params);
+    return result.take();
 }
 
 float FeatureIndex::squaredTo(const float* feature, std::int32_t number) const {

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -28,6 +29,16 @@ public:
     /// @return row -1 if none is nearer than the bound
     /// @par Repeats yes
     FeatureMatch nearest(const float* feature, float bound, float epsilon = 0) const;
+
+    /// The `count` nearest rows among those that `accepted` lets in, nearest first, equally near ones by
+    /// number; with epsilon each squared distance is at most (1 + epsilon) times the exact one's. May be
+    /// called from many threads at once.
+    /// @param accepted  a pure function; called once for each row that is near enough
+    /// @return fewer only if no more are accepted
+    /// @par Repeats yes
+    std::vector<FeatureMatch> nearestSome(const float* feature, std::size_t count,
+                                          const std::function<bool(std::int32_t)>& accepted,
+                                          float epsilon = 0) const;
 
     /// Squared distance to a row.
     float squaredTo(const float* feature, std::int32_t row) const;

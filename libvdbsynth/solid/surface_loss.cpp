@@ -244,6 +244,7 @@ private:
         std::vector<double> lost(parts.parts.size(), 0);
         for (const Lost& place : mLost) lost[parts.partOf[place.face]] += place.area;
         const PartCounts counts = countParts(parts);
+        loss.parts = parts.parts.size();
         loss.solids = counts.solids;
         loss.cavities = counts.cavities;
         for (std::size_t i = 0; i < lost.size(); ++i) {

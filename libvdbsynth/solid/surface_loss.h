@@ -17,7 +17,8 @@ struct SurfaceLoss {
     std::size_t lostSolids = 0, solids = 0;      ///< closed parts of which most is lost, and all of them
     std::size_t lostCavities = 0, cavities = 0;  ///< the same of closed voids
     std::size_t lostOpen = 0;                    ///< open parts of which most is lost
-    Vec3d boxMin, boxMax;                        ///< [voxels] around what is lost
+    std::size_t parts = 0;  ///< of the mesh, of all kinds; counted where something is lost
+    Vec3d boxMin, boxMax;   ///< [voxels] around what is lost
     /// The level set\'s volume over the mesh\'s; 1 where the mesh\'s is not known, as its parts overlap.
     double volumeLeft = 1;
     /// [voxels] of the result, below 1: voxels of this size would keep nine tenths of what is lost. 0: none

@@ -41,11 +41,11 @@ Axis2 mainAxis(float a, float b, float c) {
 }
 
 // Least squares over neighbours for the symmetric form (a b; b c) with dn = form * dx in the tangent plane.
-Tensor leastCurvature(const SurfaceShell& shell, std::size_t i) {
-    const Frame frame = frameFrom(shell.normal[i], {1, 0, 0});
+Tensor leastCurvature(const SurfaceSites& sites, std::size_t i) {
+    const Frame frame = frameFrom(sites.normal[i], {1, 0, 0});
     double xx = 0, xy = 0, yy = 0, rx = 0, ry = 0, rm = 0;  // normal equations
     const auto add = [&](std::size_t j) {
-        const Vec3f dx = shell.point[j] - shell.point[i], dn = shell.normal[j] - shell.normal[i];
+        const Vec3f dx = sites.point[j] - sites.point[i], dn = sites.normal[j] - sites.normal[i];
         const double u = dot(dx, frame.t), v = dot(dx, frame.b), p = dot(dn, frame.t), q = dot(dn, frame.b);
         xx += u * u;
         xy += u * v;
@@ -54,10 +54,10 @@ Tensor leastCurvature(const SurfaceShell& shell, std::size_t i) {
         ry += v * q;
         rm += u * q + v * p;
     };
-    for (std::uint32_t k = shell.begin[i]; k < shell.begin[i + 1]; ++k) {
-        const std::uint32_t j = shell.neighbours[k];
+    for (std::uint32_t k = sites.begin[i]; k < sites.begin[i + 1]; ++k) {
+        const std::uint32_t j = sites.neighbours[k];
         add(j);
-        for (std::uint32_t m = shell.begin[j]; m < shell.begin[j + 1]; ++m) add(shell.neighbours[m]);
+        for (std::uint32_t m = sites.begin[j]; m < sites.begin[j + 1]; ++m) add(sites.neighbours[m]);
     }
     // a xx + b xy = rx;  a xy + b (xx + yy) + c xy = rm;  b xy + c yy = ry
     const double determinant = xx * ((xx + yy) * yy - xy * xy) - xy * xy * yy;
@@ -75,28 +75,28 @@ Tensor leastCurvature(const SurfaceShell& shell, std::size_t i) {
 
 }  // namespace
 
-std::vector<Vec3f> curvatureDirections(const SurfaceShell& shell, const RunContext& ctx) {
+std::vector<Vec3f> curvatureDirections(const SurfaceSites& sites, const RunContext& ctx) {
     const auto each = [&](auto&& work) {
-        parallelFor(ctx, shell.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        parallelFor(ctx, sites.size(), 1024, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) work(i);
         });
     };
-    std::vector<Tensor> tensor(shell.size()), next(shell.size());
-    each([&](std::size_t i) { tensor[i] = leastCurvature(shell, i); });
+    std::vector<Tensor> tensor(sites.size()), next(sites.size());
+    each([&](std::size_t i) { tensor[i] = leastCurvature(sites, i); });
     for (int round = 0; round < kRounds; ++round) {
         each([&](std::size_t i) {
             Tensor sum = tensor[i];
-            for (std::uint32_t k = shell.begin[i]; k < shell.begin[i + 1]; ++k)
-                for (std::size_t e = 0; e < sum.size(); ++e) sum[e] += tensor[shell.neighbours[k]][e];
+            for (std::uint32_t k = sites.begin[i]; k < sites.begin[i + 1]; ++k)
+                for (std::size_t e = 0; e < sum.size(); ++e) sum[e] += tensor[sites.neighbours[k]][e];
             for (std::size_t e = 0; e < sum.size(); ++e)
-                next[i][e] = sum[e] / float(1 + shell.begin[i + 1] - shell.begin[i]);
+                next[i][e] = sum[e] / float(1 + sites.begin[i + 1] - sites.begin[i]);
         });
         tensor.swap(next);
     }
-    std::vector<Vec3f> direction(shell.size());
-    std::vector<float> strength(shell.size(), 0);
+    std::vector<Vec3f> direction(sites.size());
+    std::vector<float> strength(sites.size(), 0);
     each([&](std::size_t i) {
-        const Frame frame = frameFrom(shell.normal[i], {1, 0, 0});
+        const Frame frame = frameFrom(sites.normal[i], {1, 0, 0});
         const Vec3f t = times(tensor[i], frame.t), b = times(tensor[i], frame.b);
         const Axis2 axis = mainAxis(dot(frame.t, t), dot(frame.t, b), dot(frame.b, b));
         direction[i] = frame.t * axis.x + frame.b * axis.y;
@@ -110,11 +110,11 @@ std::vector<Vec3f> curvatureDirections(const SurfaceShell& shell, const RunConte
         return a.first != b.first ? a.first < b.first : a.second > b.second;
     };
     std::priority_queue<Entry, std::vector<Entry>, decltype(later)> queue(later);
-    std::vector<std::uint32_t> order(shell.size());
+    std::vector<std::uint32_t> order(sites.size());
     for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
     std::stable_sort(order.begin(), order.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return strength[a] > strength[b]; });
-    std::vector<char> done(shell.size(), 0);
+    std::vector<char> done(sites.size(), 0);
     for (std::uint32_t first : order) {
         if (done[first]) continue;
         done[first] = 1;
@@ -122,8 +122,8 @@ std::vector<Vec3f> curvatureDirections(const SurfaceShell& shell, const RunConte
         while (!queue.empty()) {
             const std::uint32_t i = queue.top().second;
             queue.pop();
-            for (std::uint32_t k = shell.begin[i]; k < shell.begin[i + 1]; ++k) {
-                const std::uint32_t j = shell.neighbours[k];
+            for (std::uint32_t k = sites.begin[i]; k < sites.begin[i + 1]; ++k) {
+                const std::uint32_t j = sites.neighbours[k];
                 if (done[j]) continue;
                 if (dot(direction[j], direction[i]) < 0) direction[j] = -direction[j];
                 done[j] = 1;

@@ -19,7 +19,7 @@ Vec3f inTangentPlane(const Vec3f& direction, const Vec3f& normal) {
     return direction - normal * dot(direction, normal);
 }
 
-// The shell, or cells of it, as a graph to diffuse on.
+// The sites, or cells of them, as a graph to diffuse on.
 struct Graph {
     std::vector<Vec3f> normal, direction;
     std::vector<char> fixed;
@@ -47,10 +47,8 @@ Graph coarser(const Graph& fine, std::vector<Index3>& places, std::vector<std::u
     for (std::size_t i = 0; i < fine.size(); ++i) {
         const std::uint32_t cell = parent[i];
         graph.normal[cell] = graph.normal[cell] + fine.normal[i];
-        if (fine.fixed[i]) {
-            graph.direction[cell] = graph.direction[cell] + fine.direction[i];
-            graph.fixed[cell] = 1;
-        }
+        graph.direction[cell] = graph.direction[cell] + fine.direction[i];
+        if (fine.fixed[i]) graph.fixed[cell] = 1;
         for (std::uint32_t k = fine.begin[i]; k < fine.begin[i + 1]; ++k)
             if (parent[fine.neighbours[k]] != cell) near[cell].push_back(parent[fine.neighbours[k]]);
     }
@@ -67,7 +65,7 @@ Graph coarser(const Graph& fine, std::vector<Index3>& places, std::vector<std::u
     return graph;
 }
 
-// Mean of a voxel's neighbours' directions, each rotated into its tangent plane.
+// Mean of a site's neighbours' directions, each rotated into its tangent plane.
 Vec3f meanAround(const Graph& graph, std::size_t i) {
     Vec3f sum;
     for (std::uint32_t k = graph.begin[i]; k < graph.begin[i + 1]; ++k)
@@ -87,7 +85,7 @@ void diffuse(Graph& graph, const RunContext& ctx) {
     }
 }
 
-// Coarse to fine; on each level unknown voxels start with the coarser level's directions.
+// Coarse to fine; on each level unknown sites start with the coarser level's directions.
 void diffuseAll(Graph& graph, std::vector<Index3> places, const RunContext& ctx) {
     const bool open = std::any_of(graph.fixed.begin(), graph.fixed.end(), [](char f) { return !f; });
     if (!open) return;
@@ -107,18 +105,18 @@ void diffuseAll(Graph& graph, std::vector<Index3> places, const RunContext& ctx)
 
 // Least sine of the angle to the normal of directions that are kept: kTrusted, or less on a component of the
 // surface with less than a quarter of such directions: a slope, or sparse input.
-std::vector<float> leastSines(const SurfaceShell& shell, const std::vector<float>& sine) {
-    std::vector<float> least(shell.size(), -1);
+std::vector<float> leastSines(const SurfaceSites& sites, const std::vector<float>& sine) {
+    std::vector<float> least(sites.size(), -1);
     std::vector<std::uint32_t> part;
-    for (std::uint32_t i = 0; i < shell.size(); ++i) {
+    for (std::uint32_t i = 0; i < sites.size(); ++i) {
         if (least[i] >= 0) continue;
         part.assign(1, i);
         least[i] = 0;
         std::vector<float> sines;
         for (std::size_t k = 0; k < part.size(); ++k) {
             sines.push_back(sine[part[k]]);
-            for (std::uint32_t n = shell.begin[part[k]]; n < shell.begin[part[k] + 1]; ++n) {
-                const std::uint32_t j = shell.neighbours[n];
+            for (std::uint32_t n = sites.begin[part[k]]; n < sites.begin[part[k] + 1]; ++n) {
+                const std::uint32_t j = sites.neighbours[n];
                 if (least[j] >= 0) continue;
                 least[j] = 0;
                 part.push_back(j);
@@ -131,20 +129,20 @@ std::vector<float> leastSines(const SurfaceShell& shell, const std::vector<float
     return least;
 }
 
-// One voxel of each connected component of the marked voxels.
-std::vector<Vec3f> partsOf(const SurfaceShell& shell, std::vector<char> marked) {
+// One site of each connected component of the marked sites.
+std::vector<Vec3f> partsOf(const SurfaceSites& sites, std::vector<char> marked) {
     std::vector<Vec3f> places;
     std::vector<std::uint32_t> open;
-    for (std::uint32_t i = 0; i < shell.size(); ++i) {
+    for (std::uint32_t i = 0; i < sites.size(); ++i) {
         if (!marked[i]) continue;
-        places.push_back(shell.point[i]);
+        places.push_back(sites.point[i]);
         marked[i] = 0;
         open.assign(1, i);
         while (!open.empty()) {
             const std::uint32_t at = open.back();
             open.pop_back();
-            for (std::uint32_t k = shell.begin[at]; k < shell.begin[at + 1]; ++k) {
-                const std::uint32_t j = shell.neighbours[k];
+            for (std::uint32_t k = sites.begin[at]; k < sites.begin[at + 1]; ++k) {
+                const std::uint32_t j = sites.neighbours[k];
                 if (!marked[j]) continue;
                 marked[j] = 0;
                 open.push_back(j);
@@ -154,25 +152,50 @@ std::vector<Vec3f> partsOf(const SurfaceShell& shell, std::vector<char> marked) 
     return places;
 }
 
+// Graph of the sites without any direction.
+Graph graphOf(const SurfaceSites& sites) {
+    Graph graph;
+    graph.normal = sites.normal;
+    graph.begin = sites.begin;
+    graph.neighbours = sites.neighbours;
+    graph.direction.resize(sites.size());
+    graph.fixed.assign(sites.size(), 0);
+    return graph;
+}
+
+// The diffused directions as tangents, and where they are not continuous.
+void finish(const SurfaceSites& sites, const Graph& graph, DirectionField& field, const RunContext& ctx) {
+    field.tangent.resize(sites.size());
+    std::vector<char> singular(sites.size(), 0);
+    parallelFor(ctx, sites.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vec3f& n = sites.normal[i];
+            Vec3f t = inTangentPlane(graph.direction[i], n);
+            // A component without any given direction takes any tangent.
+            if (length(t) < 1e-3f)
+                t = inTangentPlane(std::abs(n.x) < 0.7f ? Vec3f{1, 0, 0} : Vec3f{0, 1, 0}, n);
+            field.tangent[i] = normalized(t);
+            const Vec3f sum = graph.direction[i] + meanAround(graph, i);
+            singular[i] = length(sum) < kSingular * float(1 + sites.degree(i));
+        }
+    });
+    field.singularities = partsOf(sites, std::move(singular));
+}
+
 }  // namespace
 
-DirectionField directionField(const SurfaceShell& shell, const std::vector<Vec3f>& given,
-                              const RunContext& ctx) {
-    Graph graph;
-    graph.normal = shell.normal;
-    graph.begin = shell.begin;
-    graph.neighbours = shell.neighbours;
-    graph.direction.resize(shell.size());
-    graph.fixed.assign(shell.size(), 0);
+DirectionField directionField(const SurfaceSites& sites, const std::vector<Index3>& places,
+                              const std::vector<Vec3f>& given, const RunContext& ctx) {
+    Graph graph = graphOf(sites);
     DirectionField field;
-    std::vector<float> sine(shell.size());
-    for (std::size_t i = 0; i < shell.size(); ++i)
+    std::vector<float> sine(sites.size());
+    for (std::size_t i = 0; i < sites.size(); ++i)
         if (dot(given[i], given[i]) > 0)
-            sine[i] = length(inTangentPlane(normalized(given[i]), shell.normal[i]));
-    const std::vector<float> least = leastSines(shell, sine);
-    for (std::size_t i = 0; i < shell.size(); ++i) {
+            sine[i] = length(inTangentPlane(normalized(given[i]), sites.normal[i]));
+    const std::vector<float> least = leastSines(sites, sine);
+    for (std::size_t i = 0; i < sites.size(); ++i) {
         if (!(sine[i] > least[i])) continue;
-        graph.direction[i] = normalized(inTangentPlane(given[i], shell.normal[i]));
+        graph.direction[i] = normalized(inTangentPlane(given[i], sites.normal[i]));
         graph.fixed[i] = 1;
         ++field.known;
     }
@@ -180,23 +203,35 @@ DirectionField directionField(const SurfaceShell& shell, const std::vector<Vec3f
         throw Error(ErrorCode::Unusable,
                     "`direction`: gives no direction on the surface: it is along the normal everywhere, or "
                     "nowhere near the model");
-    diffuseAll(graph, shell.table.voxels(), ctx);
-    field.tangent.resize(shell.size());
-    std::vector<char> singular(shell.size(), 0);
-    parallelFor(ctx, shell.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const Vec3f& n = shell.normal[i];
-            Vec3f t = inTangentPlane(graph.direction[i], n);
-            // A component without any given direction takes any tangent.
-            if (length(t) < 1e-3f)
-                t = inTangentPlane(std::abs(n.x) < 0.7f ? Vec3f{1, 0, 0} : Vec3f{0, 1, 0}, n);
-            field.tangent[i] = normalized(t);
-            const Vec3f sum = graph.direction[i] + meanAround(graph, i);
-            singular[i] = length(sum) < kSingular * float(1 + shell.begin[i + 1] - shell.begin[i]);
-        }
-    });
-    field.singularities = partsOf(shell, std::move(singular));
+    diffuseAll(graph, places, ctx);
+    finish(sites, graph, field, ctx);
     return field;
+}
+
+DirectionField directionField(const SurfaceShell& shell, const std::vector<Vec3f>& given,
+                              const RunContext& ctx) {
+    return directionField(shell, shell.table.voxels(), given, ctx);
+}
+
+DirectionField smoothDirectionField(const SurfaceSites& sites, const std::vector<Index3>& places,
+                                    const Vec3f& axis, const RunContext& ctx) {
+    Graph graph = graphOf(sites);
+    for (std::size_t i = 0; i < sites.size(); ++i)
+        graph.direction[i] = normalized(inTangentPlane(axis, sites.normal[i]));
+    diffuseAll(graph, places, ctx);
+    DirectionField field;
+    finish(sites, graph, field, ctx);
+    return field;
+}
+
+std::vector<Index3> sitePlaces(const SurfaceSites& sites, double cell) {
+    std::vector<Index3> places;
+    places.reserve(sites.size());
+    const auto number = [cell](float x) {
+        return int(std::clamp(std::floor(double(x) / cell), -double(1 << 30), double(1 << 30)));
+    };
+    for (const Vec3f& p : sites.point) places.push_back({number(p.x), number(p.y), number(p.z)});
+    return places;
 }
 
 }  // namespace vdbsynth

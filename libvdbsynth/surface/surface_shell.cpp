@@ -47,10 +47,11 @@ SurfaceShell surfaceShell(const BrickField& distance, const RunContext& ctx) {
     SurfaceShell shell;
     shell.table = VoxelTable::where(
         distance, [](float d) { return std::abs(d) <= kShellReach; }, ctx);
-    if (shell.size() == 0) throw Error(ErrorCode::EmptyInput, "the model has no surface in its domain");
-    shell.point.resize(shell.size());
-    shell.normal.resize(shell.size());
-    parallelFor(ctx, shell.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    const std::size_t voxels = shell.table.size();
+    if (voxels == 0) throw Error(ErrorCode::EmptyInput, "the model has no surface in its domain");
+    shell.point.resize(voxels);
+    shell.normal.resize(voxels);
+    parallelFor(ctx, voxels, 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Index3& v = shell.table[i];
             const Vec3f at{float(v.x), float(v.y), float(v.z)};

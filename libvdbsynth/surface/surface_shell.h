@@ -1,22 +1,17 @@
 #pragma once
 #include "libvdbsynth/grid/voxel_table.h"
-#include "libvdbsynth/math/vec3.h"
+#include "libvdbsynth/points/surface_sites.h"
 
 #include <cstdint>
 #include <vector>
 
 namespace vdbsynth {
 
-/// The voxels next to a zero level, as a graph for fields over the surface. [voxels]
-struct SurfaceShell {
-    VoxelTable table;           ///< |distance| <= kShellReach
-    std::vector<Vec3f> point;   ///< of each voxel the nearest point on the zero level
-    std::vector<Vec3f> normal;  ///< there, outward, length 1
-    /// Of voxel i: neighbours[begin[i]] to neighbours[begin[i + 1] - 1], those of its 26 neighbours that are
-    /// in the shell and on the same side of a possibly thin wall (normals less than 90 degrees apart).
-    std::vector<std::uint32_t> begin, neighbours;
-
-    std::size_t size() const { return table.size(); }
+/// The voxels next to a zero level, as sites: the point of each is the nearest on the zero level, its
+/// neighbours are those of its 26 neighbours that are in the shell and on the same side of a possibly thin
+/// wall. [voxels]
+struct SurfaceShell : SurfaceSites {
+    VoxelTable table;  ///< |distance| <= kShellReach
 };
 
 inline constexpr float kShellReach = 0.9f;  ///< two layers of voxels, connected by faces

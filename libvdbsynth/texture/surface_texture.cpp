@@ -1,73 +1,210 @@
-// A stand-in for coordinate synthesis: every point is projected along the axis nearest to its normal.
 #include "libvdbsynth/texture/surface_texture.h"
 
 #include "libvdbsynth/base/error.h"
-#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/coordinates/site_chart.h"
-#include "libvdbsynth/points/surface_sites.h"
+#include "libvdbsynth/points/site_levels.h"
+#include "libvdbsynth/surface/direction_field.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <tuple>
 
 namespace vdbsynth {
 namespace {
 
-int mainAxis(const Vec3f& n) {
-    const float x = std::abs(n.x), y = std::abs(n.y), z = std::abs(n.z);
-    return z >= x && z >= y ? 2 : y >= x ? 1 : 0;
+constexpr std::size_t kDirectNeighbours = 8;
+constexpr std::size_t kMerged = 20000;  // points from which on directions are found on fewer sites
+constexpr double kMagnified = 1.5;      // texels of so many spacings and more are read smoothly
+constexpr double kMergedCell = 2.5;     // [spacings]
+
+// Points that coincide and face the same way, as one.
+struct Welded {
+    TextureTarget target;
+    std::vector<std::uint32_t> place;  // [points] in the welded target
+};
+
+Welded welded(const TextureTarget& target) {
+    std::vector<std::uint32_t> order(target.point.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto key = [&](std::uint32_t i) {
+        const Vec3f& p = target.point[i];
+        return std::make_tuple(p.x, p.y, p.z);
+    };
+    std::sort(order.begin(), order.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
+    std::vector<std::uint32_t> first(target.point.size());
+    std::vector<std::uint32_t> kept;  // at one place: they face different ways, so they are few
+    for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+        kept.clear();
+        for (end = begin; end < order.size() && key(order[end]) == key(order[begin]); ++end) {
+            const auto same = std::find_if(kept.begin(), kept.end(), [&](std::uint32_t k) {
+                return dot(target.normal[k], target.normal[order[end]]) > 0;
+            });
+            first[order[end]] = same == kept.end() ? order[end] : *same;
+            if (same == kept.end()) kept.push_back(order[end]);
+        }
+    }
+    Welded out;
+    out.place.resize(target.point.size());
+    for (std::uint32_t i = 0; i < first.size(); ++i) {
+        if (first[i] != i) continue;
+        out.place[i] = std::uint32_t(out.target.point.size());
+        out.target.point.push_back(target.point[i]);
+        out.target.normal.push_back(normalized(target.normal[i]));
+        if (!target.direction.empty()) out.target.direction.push_back(target.direction[i]);
+        if (!target.label.empty()) out.target.label.push_back(target.label[i]);
+    }
+    for (std::uint32_t i = 0; i < first.size(); ++i) out.place[i] = out.place[first[i]];
+    return out;
 }
 
-void requireInputs(const TextureTarget& target, const std::vector<SampleImage>& samples,
-                   const SurfaceTextureOptions& options) {
-    requireOption(options.scale > 0 && options.scale < 1e30, "scale", roundedText(options.scale, 6),
-                  "above 0");
-    if (target.point.empty()) throw Error(ErrorCode::EmptyInput, "the target has no points");
-    if (target.normal.size() != target.point.size())
-        throw Error(ErrorCode::ShapeMismatch, "as many normals as points are needed");
-    if (samples.empty() || samples[0].texels() == 0) throw Error(ErrorCode::EmptyInput, "an empty sample");
-    for (const SampleImage& sample : samples)
-        if (sample.channels != samples[0].channels)
-            throw Error(ErrorCode::ShapeMismatch, "samples with different numbers of channels");
-    for (std::int32_t label : target.label)
-        if (label < 0 || std::size_t(label) >= samples.size())
-            throw Error(ErrorCode::ShapeMismatch, "a label without a sample");
+// The longest side of the points' box, which directions follow where none matters.
+Vec3f longestAxis(const std::vector<Vec3f>& points) {
+    Vec3f low = points[0], high = points[0];
+    for (const Vec3f& p : points)
+        for (int a = 0; a < 3; ++a) {
+            low[a] = std::min(low[a], p[a]);
+            high[a] = std::max(high[a], p[a]);
+        }
+    Vec3f axis;
+    int longest = 0;
+    for (int a = 1; a < 3; ++a)
+        if (high[a] - low[a] > high[longest] - low[longest]) longest = a;
+    axis[longest] = 1;
+    return axis;
+}
+
+bool anyGiven(const std::vector<Vec3f>& directions) {
+    return std::any_of(directions.begin(), directions.end(), [](const Vec3f& d) { return dot(d, d) > 0; });
+}
+
+DirectionField fieldOn(const SurfaceSites& sites, const std::vector<Vec3f>& given, double spacing,
+                       const RunContext& ctx) {
+    const std::vector<Index3> places = sitePlaces(sites, 1.5 * spacing);
+    if (anyGiven(given)) return directionField(sites, places, given, ctx);
+    return smoothDirectionField(sites, places, longestAxis(sites.point), ctx);
+}
+
+// The tangents of coarser sites, read at finer points: the mean over the parent and its neighbours, by
+// distance.
+std::vector<Vec3f> readBetween(const TextureTarget& fine, const SurfaceSites& coarse,
+                               const std::vector<Vec3f>& tangent, const std::vector<std::uint32_t>& parent,
+                               double reach, const RunContext& ctx) {
+    std::vector<Vec3f> out(fine.point.size());
+    const float squaredReach = float(reach * reach);
+    parallelFor(ctx, out.size(), 8192, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t p = parent[i];
+            Vec3f sum = tangent[p] * 1e-3f;
+            const auto add = [&](std::uint32_t j) {
+                const Vec3f v = fine.point[i] - coarse.point[j];
+                const float share = 1 - dot(v, v) / squaredReach;
+                if (share > 0) sum = sum + tangent[j] * (share * share);
+            };
+            add(p);
+            for (std::uint32_t k = coarse.begin[p]; k < coarse.begin[p + 1]; ++k) add(coarse.neighbours[k]);
+            out[i] = tangentNear(fine.normal[i], sum);
+        }
+    });
+    return out;
+}
+
+// Sites as sparse as the texels take a texel each, so that the sample's contrast and histogram stay; reading
+// between texels would cost fine textures a third of their contrast. Denser sites are read smoothly.
+void readValues(TexturedSites& sites, const std::vector<SampleImage>& samples, bool dense,
+                const RunContext& ctx) {
+    const std::size_t channels = std::size_t(samples[0].channels);
+    sites.values.resize(sites.coordinate.size() * channels);
+    parallelFor(ctx, sites.coordinate.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const SampleImage& sample = samples[std::size_t(sites.sample[i])];
+            float* out = sites.values.data() + i * channels;
+            if (dense)
+                readCubic(sample, sites.coordinate[i], out);
+            else
+                std::copy_n(nearestTexel(sample, sites.coordinate[i]), channels, out);
+        }
+    });
 }
 
 }  // namespace
 
+void requireTarget(const TextureTarget& target) {
+    const std::size_t n = target.point.size();
+    if (n == 0) throw Error(ErrorCode::EmptyInput, "there are no points");
+    if (target.normal.size() != n || (!target.direction.empty() && target.direction.size() != n) ||
+        (!target.label.empty() && target.label.size() != n))
+        throw Error(ErrorCode::ShapeMismatch, "points, normals, directions and labels differ in number");
+    for (std::size_t i = 0; i < n; ++i) {
+        const Vec3f &p = target.point[i], &m = target.normal[i];
+        if (!std::isfinite(p.x + p.y + p.z) || !std::isfinite(m.x + m.y + m.z) || !(dot(m, m) > 0))
+            throw Error(ErrorCode::Unusable,
+                        "point " + std::to_string(i) + " is not finite, or has no normal");
+    }
+}
+
+std::vector<Vec3f> targetTangents(const TextureTarget& target, double spacing,
+                                  std::vector<Vec3f>* singularities, const RunContext& ctx) {
+    const bool direct = target.point.size() <= kMerged;
+    const double cell = kMergedCell * spacing;
+    SurfaceSites sites;
+    std::vector<Vec3f> given = target.direction;
+    std::vector<std::uint32_t> parent;
+    if (direct) {
+        sites = sitesOfPoints(target.point, target.normal, kDirectNeighbours, ctx);
+    } else {
+        CoarserSites merged = mergedByCells(target.point, target.normal, cell, ctx);
+        parent = std::move(merged.parent);
+        if (!given.empty()) {
+            given.assign(merged.point.size(), {});
+            for (std::size_t i = 0; i < parent.size(); ++i)
+                given[parent[i]] = given[parent[i]] + target.direction[i];
+        }
+        sites = sitesOfPoints(std::move(merged.point), std::move(merged.normal), kDirectNeighbours, ctx);
+    }
+    DirectionField field = fieldOn(sites, given, direct ? spacing : cell, ctx);
+    if (singularities) *singularities = std::move(field.singularities);
+    if (direct) return std::move(field.tangent);
+    return readBetween(target, sites, field.tangent, parent, 2 * cell, ctx);
+}
+
 SurfaceTextureResult textureSurface(const TextureTarget& target, const std::vector<SampleImage>& samples,
                                     const SurfaceTextureOptions& options, const RunContext& ctx) {
-    requireInputs(target, samples, options);
-    SurfaceTextureResult result;
-    const std::size_t count = target.point.size(), channels = std::size_t(samples[0].channels);
-    const double near = meanNearestDistance(sitesOfPoints(target.point, target.normal, 1, ctx));
-    result.texel = options.texel > 0 ? options.texel : (near > 0 ? near : 1) * options.scale;
-    TexturedSites& sites = result.sites;
-    sites.sample.resize(count);
-    sites.coordinate.resize(count);
-    sites.tangent.resize(count);
-    sites.values.resize(count * channels);
-    sites.blended.assign(count, 0);
-    parallelFor(ctx, count, 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const Vec3f& n = target.normal[i];
-            const int axis = mainAxis(n);
-            Vec3f s{0, 0, 0};
-            s[(axis + 1) % 3] = 1;
-            if (!target.direction.empty() && length(target.direction[i]) > 0) s = target.direction[i];
-            const Vec3f tangent = tangentNear(n, s);
-            const float side = n[axis] < 0 ? -1.f : 1.f;
-            const Vec3f& p = target.point[i];
-            sites.sample[i] = target.label.empty() ? 0 : target.label[i];
-            sites.tangent[i] = tangent;
-            const float texel = float(result.texel);
-            sites.coordinate[i] = {p[(axis + 1) % 3] / texel, side * p[(axis + 2) % 3] / texel};
-            readCubic(samples[std::size_t(sites.sample[i])], sites.coordinate[i],
-                      sites.values.data() + i * channels);
+    if (!(options.texel >= 0) || !std::isfinite(options.texel))
+        throw Error(ErrorCode::InvalidOption, "`texel`: is below 0");
+    if (!(options.scale > 0) || !std::isfinite(options.scale))
+        throw Error(ErrorCode::InvalidOption, "`scale`: is not above 0");
+    validate(options.synthesis);
+    requireTarget(target);
+    return withThreads(ctx, [&] {
+        Welded whole = welded(target);
+        // The nearest neighbours give the unit of length.
+        const double spacing =
+            meanNearestDistance(sitesOfPoints(whole.target.point, whole.target.normal, 1, ctx));
+        SurfaceTextureResult result;
+        // A single point, or all at one place, has no spacing; any texel serves.
+        const double unit = spacing > 0 ? spacing : 1;
+        result.texel = options.texel > 0 ? options.texel : unit * options.scale;
+        CoordinateSites sites;
+        sites.tangent = targetTangents(whole.target, unit, &result.singularities, ctx);
+        sites.point = std::move(whole.target.point);
+        sites.normal = std::move(whole.target.normal);
+        sites.label = std::move(whole.target.label);
+        CoordinateResult coordinates =
+            synthesizeCoordinates(sites, samples, result.texel, options.synthesis, ctx);
+        result.levels = std::move(coordinates.levels);
+        for (std::size_t i = 0; i < whole.place.size(); ++i) {
+            const std::uint32_t p = whole.place[i];
+            result.sites.sample.push_back(sites.label.empty() ? 0 : sites.label[p]);
+            result.sites.coordinate.push_back(coordinates.coordinate[p]);
+            result.sites.tangent.push_back(sites.tangent[p]);
         }
+        result.sites.blended.assign(whole.place.size(), 0);
+        readValues(result.sites, samples, result.texel > kMagnified * unit, ctx);
+        return result;
     });
-    result.levels.push_back({count, 1, 1, 0});
-    return result;
 }
 
 }  // namespace vdbsynth

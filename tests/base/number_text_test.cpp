@@ -133,3 +133,9 @@ TEST_CASE("number_text: a host with a decimal comma changes nothing", "[base][pr
     double value = 0;
     CHECK_FALSE(parseReal("0,5", value));
 }
+
+TEST_CASE("countText: one of something is not several", "[base][hand]") {
+    CHECK(countText(0, "point") == "0 points");
+    CHECK(countText(1, "open edge") == "1 open edge");
+    CHECK(countText(12, "row") == "12 rows");
+}

@@ -95,7 +95,7 @@ class Polygons(Reported):
         path = self.write("b.obj", "v 0 0 0\nv 4 4 0\nv 4 0 0\nv 0 4 0\nv -1 2 0\nv 0 0 9\nf 1 2 3 4 5\nf 1 2 6\nf 1 2\n")
         said = self.ok("info", path).stderr
         self.assertIn("b.obj: 1 of 3 faces cross themselves", said)
-        self.assertIn("b.obj: 1 faces with fewer than three corners left out", said)
+        self.assertIn("b.obj: 1 face with fewer than three corners left out", said)
 
 
 class Dialects(Reported):
@@ -173,7 +173,7 @@ class Dialects(Reported):
     def test_what_is_left_out_is_said(self):
         text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\nsurf 0 1 0 1 1 2 3\n"
         said = self.ok("info", self.write("a.obj", text)).stderr
-        self.assertIn("1 points and lines (p, l) left out", said)
+        self.assertIn("1 point or line (p, l) left out", said)
         self.assertIn("1 free-form curves and surfaces", said)
 
 

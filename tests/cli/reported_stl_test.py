@@ -70,7 +70,7 @@ class Files(Reported):
         self.assertEqual(self.info("03-stl-mixed-case.stl")["faces"], 288)
 
     def test_04_solid_header_and_one_byte_too_many(self):
-        self.read_as("04-stl-solid-header-odd-byte.stl", 2.343, says="1 bytes behind the last of 288 triangles")
+        self.read_as("04-stl-solid-header-odd-byte.stl", 2.343, says="1 byte behind the last of 288 triangles")
         self.assertEqual(self.info("04-stl-solid-header-odd-byte.stl")["faces"], 288)
 
     def test_05_count_left_zero(self):

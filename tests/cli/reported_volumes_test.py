@@ -216,6 +216,21 @@ class ArrayFiles(Volumes):
         done = self.convert("64-npy-porespy-bool.npy", resolution=None)
         self.assertIn("two values, of which 1 is solid; --labels changes that", done.said)
 
+    def test_volume_that_smoothing_takes_is_said(self):
+        def block(side, low, high):
+            inside = range(low, high)
+            return npy((side,) * 3, bytes(x in inside and y in inside and z in inside for x in range(side) for y in range(side) for z in range(side)))
+
+        large = self.convert(self.write("l.npy", block(70, 5, 65)), resolution=None)
+        self.assertNotIn("of its solid samples", large.said)
+        some = self.convert(self.write("s.npy", block(40, 5, 35)), resolution=None)
+        self.assertIn("s.npy: 2 % of the volume of its solid samples is lost by smoothing", some.said)
+        self.assertIn("--threshold 0.5, which smooths less", some.said)
+        self.assertNotIn("warning", some.said)
+        for options in ((), ("--threshold", 0.5)):
+            small = self.convert(self.write("m.npy", block(12, 4, 8)), *options, resolution=None)
+            self.assertRegex(small.said, r"warning: .*m.npy: \d+ % of the volume of its solid samples is lost")
+
     def test_90_closed_void_at_its_own_size(self):
         done = self.convert("90-npy-closed-void.npy", resolution=None)
         self.near(done.volume, 43776, 0.01)

@@ -213,6 +213,33 @@ TEST_CASE("resampleBand: a closed void stays one", "[distance][hand]") {
     }
 }
 
+TEST_CASE("resampleBand: grains of one voxel on a finer lattice have distances on both sides",
+          "[distance][property]") {
+    const BrickField grains = test::fieldFrom({24, 24, 24}, [](const Index3& p) {
+        const bool grain = (p.x * 7 + p.y * 5 + p.z * 3) % 13 == 0;
+        return grain ? -0.375f : 0.04f;
+    });
+    for (const double factor : {0.25, 0.4}) {
+        RebuildOptions options;
+        options.voxelSize = float(factor);
+        const int side = int(24 / factor);
+        double steepest = 0;
+        resampleBand(reading(grains), scaled(factor), {{0, 0, 0}, {side, side, side}}, options,
+                     [&](const BrickField& part) {
+                         forEachVoxel(part.box(), [&](const Index3& p) {
+                             for (int axis = 0; axis < 3; ++axis) {
+                                 Index3 next = p;
+                                 if (++next[axis] <= part.box().max[axis])
+                                     steepest =
+                                         std::max(steepest, std::abs(double(part.at(p) - part.at(next))));
+                             }
+                         });
+                     });
+        CAPTURE(factor);
+        CHECK(steepest < 1.05);
+    }
+}
+
 TEST_CASE("resampleBand: the same in parts, and it can be cancelled", "[distance][threads]") {
     const BrickField field = rod();
     const auto solidOf = [&](int threads) {

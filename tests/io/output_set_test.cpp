@@ -74,6 +74,8 @@ TEST_CASE("OutputSet: a directory, a missing folder and the same name twice are 
     CHECK(test::contains(test::thrownBy([&] { outputs.add("/tmp"); }).message, "is a directory"));
     CHECK(test::contains(test::thrownBy([&] { outputs.add(folder.path("no/a.txt")); }).message,
                          "does not exist"));
+    CHECK(test::contains(test::thrownBy([&] { outputs.add("/proc/a.txt"); }).message,
+                         "/proc/a.txt: cannot be written: /proc takes no new files"));
     outputs.add(folder.path("a.txt"));
     CHECK(test::thrownBy([&] { outputs.add(folder.path("a.txt")); }).code == int(ErrorCode::InvalidOption));
 }

@@ -108,6 +108,23 @@ TEST_CASE("volumeField: smoothed labels keep every sample's side and make slopes
     CHECK(crossing(result.field, {20, 3, 5}, 2) == Approx(5.4).margin(0.15));
 }
 
+TEST_CASE("volumeField: the volume of samples of two sides is told", "[raster][hand]") {
+    Raster flat = rasterOf({6, 6, 10}, [](int, int, int z) { return z < 4 ? 1.f : 0.f; });
+    CHECK(volumeField("a", flat).solidVolume == 6 * 6 * 4);
+    CHECK(test::contains(volumeField("a", flat).keepsMore, "`threshold` 0.5"));
+    VolumeOptions half;
+    half.threshold = 0.5;
+    CHECK(volumeField("a", flat, half).solidVolume == 6 * 6 * 4);
+    // At the edge of the domain half a voxel of the cell is left.
+    flat.spacing = {1, 1, 2};
+    CHECK(volumeField("a", flat).solidVolume == Approx(6 * 6 * 7.5));
+    VolumeOptions labels;
+    labels.labels = {{2, 3}};
+    const Raster some = rasterOf({6, 6, 6}, [](int x, int, int) { return float(x); });
+    CHECK(volumeField("a", some, labels).solidVolume == 6 * 6 * 2);
+    CHECK(volumeField("a", some, half).solidVolume == 0);  // values between its samples are known
+}
+
 TEST_CASE("volumeField: of two values the larger is solid, of more one must be named", "[raster][error]") {
     const Raster two = rasterOf({8, 8, 8}, [](int x, int, int) { return x < 4 ? 0.f : 255.f; });
     const RasterField result = volumeField("a", two);

@@ -1,5 +1,7 @@
 #include "libvdbsynth/surface/curvature_direction.h"
 
+#include "libvdbsynth/surface/surface_shell.h"
+
 #include <catch2/catch.hpp>
 
 #include "tests/support/shapes.h"

@@ -22,6 +22,8 @@ struct OfMethods {
 
 const std::vector<OfMethods> kOfMethods{{"passes", {"default"}},
                                         {"coherence", {"default"}},
+                                        {"uniformity", {"default"}},
+                                        {"histogram", {"default"}},
                                         {"draft", {"default"}},
                                         {"neighbours", {"parameterize", "match", "hybrid"}},
                                         {"levels", {"default", "match", "hybrid"}},
@@ -60,6 +62,8 @@ TextureOptions parseOptions(const Arguments& arguments) {
     options.matchSample = arguments.whole("match-sample");
     options.synthesis.passes = arguments.has("draft") ? 0 : arguments.whole("passes");
     options.synthesis.coherence = arguments.real("coherence");
+    options.synthesis.uniformity = arguments.real("uniformity");
+    options.synthesis.histogram = arguments.real("histogram");
     return options;
 }
 

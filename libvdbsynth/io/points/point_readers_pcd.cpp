@@ -52,8 +52,8 @@ Layout binaryLayout(const std::string& path, const std::string& content, const P
         if (std::uint64_t(*size) > rest.size()) throw truncated("holds");
         if (rest.size() - std::uint64_t(*size) >= std::uint64_t(header.rowBytes))
             message(ctx, MessageLevel::Warning,
-                    path + ": " + std::to_string(rest.size() - std::uint64_t(*size)) + " bytes behind its " +
-                        std::to_string(header.points) + " points left out");
+                    path + ": " + countText(rest.size() - std::uint64_t(*size), "byte") + " behind its " +
+                        countText(std::size_t(header.points), "point") + " left out");
         return {rest, false};
     }
     std::uint32_t sizes[2];
@@ -211,8 +211,8 @@ void readAscii(const std::string& path, const std::string& content, const PcdHea
                                             "; the file is truncated");
     if (more > 0)
         message(ctx, MessageLevel::Warning,
-                path + ": " + std::to_string(more) + " rows behind its " + std::to_string(points) +
-                    " points left out");
+                path + ": " + countText(std::size_t(more), "row") + " behind its " +
+                    countText(std::size_t(points), "point") + " left out");
     if (longRows > 0)
         message(ctx, MessageLevel::Warning,
                 path + ": " + std::to_string(longRows) +

@@ -1,5 +1,6 @@
 // Rows of numbers: .xyz, .pwn, .pts, .txt, .asc, .csv, .xyzn, .xyzrgb.
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/points/point_columns.h"
 #include "libvdbsynth/io/points/row_text.h"
@@ -136,8 +137,9 @@ void RowReader::endBlock(bool atEnd) {
         say(MessageLevel::Warning, std::to_string(mWrongCounts) + " of its counts are not those of the rows");
     if (rows == mClaimed || mWrongCounts > 1) return;
     say(MessageLevel::Warning, "line " + std::to_string(mText.lineNumberAt(mBlockAt)) + " counts " +
-                                   std::to_string(mClaimed) + " points, " + std::to_string(rows) +
-                                   " rows are there" +
+                                   countText(std::size_t(mClaimed), "point") + ", " +
+                                   countText(std::size_t(rows), "row") +
+                                   (rows == 1 ? " is there" : " are there") +
                                    (atEnd && rows < mClaimed ? "; the file is truncated" : "; all are read"));
 }
 
@@ -167,8 +169,8 @@ void RowReader::nameColumns() {
         if (!namePlaces(mTable.names)) mTable.names.clear();
     }
     if (mTable.names.empty() && mHeaderLines > 0)
-        say(MessageLevel::Note,
-            std::to_string(mHeaderLines) + " lines above its rows skipped, which name no columns x, y and z");
+        say(MessageLevel::Note, countText(std::size_t(mHeaderLines), "line") +
+                                    " above its rows skipped, without names of columns x, y and z");
     // These extensions say what the columns are.
     const std::string extension = readExtensionOf(mPath);
     if (mTable.names.empty() && columns == 6 && extension == "xyzn")
@@ -225,7 +227,7 @@ void RowReader::dropTextColumns() {
         else
             say(MessageLevel::Note, "column " + std::to_string(column + 1) +
                                         " left out, for it holds words in " +
-                                        std::to_string(mTextRows[column]) + " rows");
+                                        countText(std::size_t(mTextRows[column]), "row"));
     }
     if (kept.size() == mTable.columns) return;
     PointTable table;

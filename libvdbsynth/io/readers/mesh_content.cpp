@@ -1,6 +1,7 @@
 #include "libvdbsynth/io/readers/mesh_content.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/geometry/local_points.h"
 
 #include <algorithm>
@@ -53,8 +54,9 @@ void sayFaces(const std::string& path, const PolygonList& polygons, std::size_t 
     const auto small = std::count_if(polygons.sizes.begin(), polygons.sizes.end(),
                                      [](std::uint32_t size) { return size < 3; });
     if (small > 0)
-        message(ctx, MessageLevel::Note,
-                path + ": " + std::to_string(small) + " faces with fewer than three corners left out");
+        message(
+            ctx, MessageLevel::Note,
+            path + ": " + countText(std::size_t(small), "face") + " with fewer than three corners left out");
     if (crossing > 0)
         message(ctx, MessageLevel::Warning,
                 path + ": " + std::to_string(crossing) + " of " + std::to_string(polygons.sizes.size()) +

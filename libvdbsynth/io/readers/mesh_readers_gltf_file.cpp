@@ -146,8 +146,10 @@ GltfFile::GltfFile(const std::string& path, const std::string& content, const Ru
     checkGltfExtensions(*this, mJson);
     if (replaced) say(MessageLevel::Note, "its JSON is not UTF-8; letters beyond ASCII are read as ?");
     if (chunks.missing > 0)
-        say(MessageLevel::Warning, "is cut off: the last " + std::to_string(chunks.missing) +
-                                       " bytes of its data are missing; download or export it again");
+        say(MessageLevel::Warning,
+            "is cut off: the last " + std::to_string(chunks.missing) +
+                (chunks.missing == 1 ? " byte of its data is" : " bytes of its data are") +
+                " missing; download or export it again");
 }
 
 void GltfFile::refuse(const std::string& what) const {

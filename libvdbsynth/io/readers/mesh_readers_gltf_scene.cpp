@@ -1,4 +1,5 @@
 // Nodes of glTF: which meshes the default scene has, and where.
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/readers/mesh_readers_gltf_steps.h"
 
 #include <algorithm>
@@ -37,10 +38,6 @@ bool isHidden(const GltfJson& node) {
     const GltfJson* visibility = gltfExtension(node, "KHR_node_visibility");
     const GltfJson* visible = visibility ? gltfMember(*visibility, "visible") : nullptr;
     return visible && *visible == false;
-}
-
-std::string counted(std::size_t count, const char* what) {
-    return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
 // Nodes below some roots; those already marked are not visited again.
@@ -110,7 +107,8 @@ void GltfScene::visit(const std::vector<std::int64_t>& roots) {
 
 void GltfScene::sayWhatIsLeftOut() const {
     const GltfJson &nodes = mFile.list("nodes"), &scenes = mFile.list("scenes");
-    if (mHidden > 0) mFile.say(MessageLevel::Note, counted(mHidden, "hidden node") + " with a mesh left out");
+    if (mHidden > 0)
+        mFile.say(MessageLevel::Note, countText(mHidden, "hidden node") + " with a mesh left out");
     std::vector<char> inScenes = mReached;
     for (std::size_t i = 0; i < scenes.size(); ++i)
         mark(mFile, mFile.indices(mFile.item("scenes", std::int64_t(i), "a scene"), "nodes"), inScenes);
@@ -120,11 +118,12 @@ void GltfScene::sayWhatIsLeftOut() const {
         inScenes[i] ? ++others : ++loose;
     }
     if (scenes.size() > 1)
-        mFile.say(MessageLevel::Note,
-                  "its default scene is read; " + counted(scenes.size() - 1, "other scene") + " with " +
-                      counted(others, "node") + " of meshes left out; save each scene as a file of its own");
+        mFile.say(MessageLevel::Note, "its default scene is read; " +
+                                          countText(scenes.size() - 1, "other scene") + " with " +
+                                          countText(others, "node") +
+                                          " of meshes left out; save each scene as a file of its own");
     if (loose > 0)
-        mFile.say(MessageLevel::Note, counted(loose, "node") + " with a mesh in no scene left out; add " +
+        mFile.say(MessageLevel::Note, countText(loose, "node") + " with a mesh in no scene left out; add " +
                                           (loose == 1 ? "it" : "them") + " to the scene to have " +
                                           (loose == 1 ? "it" : "them"));
 }

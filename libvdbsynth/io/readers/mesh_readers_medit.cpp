@@ -1,5 +1,6 @@
 // MEDIT .mesh, ascii: the surface triangles and quadrilaterals of a mesh; if it has only volume elements, the
 // faces that belong to exactly one of them.
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/printable_text.h"
 #include "libvdbsynth/io/readers/mesh_readers.h"
 #include "libvdbsynth/io/readers/text_scanner.h"
@@ -123,8 +124,8 @@ MeshContent readMedit(const std::string& path, const std::string& content, const
             // Edges, corners, normals and similar: a number of lines.
             if (word.find("P2") != std::string::npos || word.find("Q2") != std::string::npos)
                 message(ctx, MessageLevel::Warning,
-                        path + ": " + std::to_string(count) + " curved elements (" + printableText(word) +
-                            ") are not read; save it with straight ones");
+                        path + ": " + countText(std::size_t(count), "curved element") + " (" +
+                            printableText(word) + ") left out; save it with straight ones");
             scanner.skipLine();
             skipValues(scanner, count);
         }

@@ -254,7 +254,9 @@ void ObjReader::addTexture() {
 }
 
 void ObjReader::sayLeftOut() const {
-    say(MessageLevel::Note, mLeftOut.elements, "points and lines (p, l) left out; only faces are read");
+    say(MessageLevel::Note, mLeftOut.elements,
+        mLeftOut.elements == 1 ? "point or line (p, l) left out; only faces are read"
+                               : "points and lines (p, l) left out; only faces are read");
     say(MessageLevel::Warning, mLeftOut.surfaces,
         "free-form curves and surfaces (curv, surf) left out; exporting them as polygons helps");
     say(MessageLevel::Warning, mLeftOut.calls, "other files (call) left out");

@@ -1,5 +1,6 @@
 // OFF and its variants with extra numbers per vertex (NOFF, COFF, STOFF, CNOFF): ascii only.
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/readers/mesh_readers.h"
 #include "libvdbsynth/io/readers/text_scanner.h"
 
@@ -129,8 +130,9 @@ public:
                     path + ": colours of " + std::to_string(mLongFaces) + " faces are not read");
         if (!mScanner.atEnd())
             message(ctx, MessageLevel::Warning,
-                    path + ": what stands behind the last of " + std::to_string(mCounts.faces) +
-                        " faces, from line " + std::to_string(mScanner.line()) + " on, is not read");
+                    path + ": what stands behind the last of " +
+                        countText(std::size_t(mCounts.faces), "face") + ", from line " +
+                        std::to_string(mScanner.line()) + " on, is not read");
     }
 
 private:

@@ -1,6 +1,7 @@
 // PLY as meshes and as points: vertex x y z of any number type, faces as lists of indices; every other
 // element and property is skipped by its declared size.
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/printable_text.h"
 #include "libvdbsynth/io/points/point_readers.h"
 #include "libvdbsynth/io/readers/mesh_readers.h"
@@ -213,7 +214,7 @@ void report(const std::string& path, const PlyHeader& header, const PlyBody& bod
         say(MessageLevel::Note, std::to_string(body.longLines()) +
                                     " lines have more words than the header declares, which are not read");
     if (const std::size_t left = body.bytesLeft())
-        say(MessageLevel::Note, std::to_string(left) + " bytes behind the last element are not read");
+        say(MessageLevel::Note, countText(left, "byte") + " behind the last element left out");
 }
 
 // All normals of points, or none if some have no direction.

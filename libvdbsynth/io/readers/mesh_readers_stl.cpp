@@ -1,6 +1,7 @@
 // STL. Binary: a header of 80 bytes, a count, records of 50 bytes. Counts and headers are often wrong, so the
 // size of the file and what stands in the records decide.
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/readers/facet_soup.h"
 #include "libvdbsynth/io/readers/mesh_readers.h"
 #include "libvdbsynth/io/readers/stl_text.h"
@@ -171,8 +172,8 @@ MeshContent readBinary(const std::string& path, const std::string& content, cons
                                                 " of them are there");
         if (!extent.note.empty()) say(extent.level, extent.note);
         if (const std::uint64_t behind = file.bytesBehind(extent.records))
-            say(MessageLevel::Note, std::to_string(behind) + " bytes behind the last of " +
-                                        triangles(extent.records) + " are not read");
+            say(MessageLevel::Note,
+                countText(behind, "byte") + " behind the last of " + triangles(extent.records) + " left out");
     }
     if (attributes > 0)
         say(MessageLevel::Note,

@@ -94,7 +94,7 @@ LevelSet loadPoints(const std::string& path, const ModelOptions& options, const 
     PointFile file = readPoints(path, ctx);
     if (file.invalid > 0)
         message(ctx, MessageLevel::Note,
-                path + ": " + std::to_string(file.invalid) + " points without finite coordinates left out");
+                path + ": " + countText(file.invalid, "point") + " without finite coordinates left out");
     scalePoints(file.cloud.points, file.cloud.origin, options.unitScale);
     // Outliers would make the voxels too large.
     PointCloud core = file.cloud;
@@ -134,18 +134,6 @@ void placeInWorld(const RasterField& field, openvdb::FloatGrid& grid) {
     if (!(o.x == 0 && o.y == 0 && o.z == 0)) grid.transform().postTranslate({o.x, o.y, o.z});
 }
 
-void sayLostHeights(const std::string& path, const Raster& raster, const RasterField& field,
-                    const RunContext& ctx) {
-    if (field.lostShare < 0.001) return;
-    const std::string text =
-        path + ": " + roundedText(100 * field.lostShare, 2) +
-        " % of its pixels lie farther than a voxel from the surface, as their details are smaller; "
-        "`resolution` " +
-        std::to_string(std::max(raster.size.x, raster.size.y)) + " keeps them";
-    if (field.lostShare > 0.5) throw Error(ErrorCode::Unusable, text);
-    message(ctx, MessageLevel::Warning, text);
-}
-
 // An image as a slab, a volume by its threshold or labels; both have a domain.
 LevelSet loadRaster(const std::string& path, const ModelOptions& options, const RunContext& ctx) {
     Raster raster = readRaster(path, {options.grid}, ctx);
@@ -168,6 +156,7 @@ LevelSet loadRaster(const std::string& path, const ModelOptions& options, const 
     sayLostHeights(path, raster, field, ctx);
     LevelSet model = modelFromField(field.field, kRasterFieldLimit, /* exact= */ false, field.domain,
                                     field.voxelSize, path, "no part of it is solid", ctx);
+    sayLostSamples(path, field, *model.grid, ctx);
     placeInWorld(field, *model.grid);
     return image ? model : atVoxelSize(path, model, options, ctx);
 }

@@ -1,5 +1,6 @@
 // Solids from oriented points.
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/distance/point_field.h"
 #include "libvdbsynth/vdb/convert/far_grid.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
@@ -28,11 +29,11 @@ FloatGridPtr pointsToSolid(const PointCloud& cloud, double voxelSize, double hal
     const std::size_t outliers = dropOutliers(index, ctx);
     if (outliers > 0)
         message(ctx, MessageLevel::Warning,
-                name + ": " + std::to_string(outliers) + " outliers of " +
-                    std::to_string(cloud.points.size()) + " points left out");
+                name + ": " + countText(outliers, "outlier") + " of " +
+                    countText(cloud.points.size(), "point") + " left out");
     if (index.points.size() < 8)
-        throw Error(ErrorCode::Unusable, name + ": " + std::to_string(index.points.size()) +
-                                             " distinct points are too few for a surface; 8 are needed");
+        throw Error(ErrorCode::Unusable, name + ": " + countText(index.points.size(), "distinct point") +
+                                             " cannot make a surface; 8 are needed");
     if (index.normals.empty()) {
         message(ctx, MessageLevel::Note, name + ": no normals; estimated and oriented consistently");
         estimateNormals(index, ctx);

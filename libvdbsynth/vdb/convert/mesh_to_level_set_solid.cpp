@@ -1,6 +1,7 @@
 // Closed solids from any mesh: prepared, its parts oriented, by OpenVDB where that does well, else by winding
 // numbers.
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set_steps.h"
 #include "libvdbsynth/vdb/convert/surface_kept.h"
@@ -36,9 +37,7 @@ bool hasCavities(const MeshParts& parts) {
 
 void noteTurned(const OrientedParts& oriented, const PartCounts& counts, const std::string& name,
                 const RunContext& ctx) {
-    const auto parts = [](std::size_t count) {
-        return std::to_string(count) + (count == 1 ? " part" : " parts");
-    };
+    const auto parts = [](std::size_t count) { return countText(count, "part"); };
     if (oriented.flipped > 0)
         message(ctx, MessageLevel::Note,
                 name + ": the normals of " + parts(oriented.flipped) + " turned: outermost parts are solid" +
@@ -67,14 +66,14 @@ Prepared prepare(const Mesh& mesh, const std::string& name, const RunContext& ct
     if (!prepared.balanced) {
         prepared.balanced = isBalanced(prepared.mesh);
         const MeshSummary summary = summarize(prepared.mesh);
-        const auto add = [&](std::size_t count, const char* what) {
+        const auto add = [&](std::size_t count, const char* what, const char* more = "") {
             if (count > 0)
-                prepared.found += (prepared.found.empty() ? "" : ", ") + std::to_string(count) + what;
+                prepared.found += (prepared.found.empty() ? "" : ", ") + countText(count, what) + more;
         };
-        add(summary.openEdges, " open edges");
-        add(summary.nonManifoldEdges, " edges of more than two faces");
-        add(duplicates, " duplicate faces");
-        add(flipped, " flipped faces");
+        add(summary.openEdges, "open edge");
+        add(summary.nonManifoldEdges, "edge", " of more than two faces");
+        add(duplicates, "duplicate face");
+        add(flipped, "flipped face");
     }
     noteTurned(oriented, countParts(parts), name, ctx);
     return prepared;

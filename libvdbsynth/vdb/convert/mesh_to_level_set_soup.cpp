@@ -1,5 +1,6 @@
 // Solids from meshes that are not watertight: the sign is that of the generalised winding number, holes are
 // closed where it is one half.
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/distance/winding_field.h"
 #include "libvdbsynth/distance/winding_number.h"
@@ -147,8 +148,8 @@ BrickField soupToField(const Mesh& indexMesh, const std::string& name, const Run
     const double share = solidShare(indexMesh, winding);
     if (share < 0.5)
         throw Error(ErrorCode::Unusable, name + ": a sheet with " +
-                                             std::to_string(summarize(indexMesh).openEdges) +
-                                             " open edges: " + std::to_string(int(100 * (1 - share))) +
+                                             countText(summarize(indexMesh).openEdges, "open edge") + ": " +
+                                             std::to_string(int(100 * (1 - share))) +
                                              " % of its area encloses nothing; close the mesh or make a "
                                              "shell with `open` shell and a `thickness`");
     return withThreads(ctx, [&] {

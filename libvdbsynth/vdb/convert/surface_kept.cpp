@@ -2,6 +2,8 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/grid/components.h"
+#include "libvdbsynth/grid/occupancy.h"
 #include "libvdbsynth/solid/surface_loss.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
@@ -47,6 +49,17 @@ void noteBounds(const MeshSummary& summary, const openvdb::FloatGrid& grid, cons
                 ", to " + boundsText(low * voxel, high * voxel));
 }
 
+// What a thin solid broke into, if that is more than the mesh has; else empty.
+std::string brokenText(BrickField& field, const SurfaceLoss& loss, const RunContext& ctx) {
+    constexpr double kMostVoxels = 2e9;  // a bit each
+    if (loss.parts == 0 || double(field.box().volume()) > kMostVoxels) return "";
+    const Index3 corner = field.box().min;
+    field.translate(Index3{0, 0, 0} - corner);
+    const std::size_t parts = findComponents(Occupancy::fromField(field, ctx), Neighbours::All).sizes.size();
+    field.translate(corner);
+    return parts > loss.parts ? "; what is left breaks into " + std::to_string(parts) + " parts" : "";
+}
+
 }  // namespace
 
 void requireKept(const Mesh& mesh, openvdb::FloatGrid& grid, const std::string& name, const RunContext& ctx) {
@@ -63,7 +76,7 @@ void requireKept(const Mesh& mesh, openvdb::FloatGrid& grid, const std::string& 
     double side = 0;
     for (int axis = 0; axis < 3; ++axis) side = std::max(side, summary.boxMax[axis] - summary.boxMin[axis]);
     const double voxel = voxelSizeOf(grid);
-    const std::string text = name + ": " + lossText(loss, voxel, side * voxel);
+    const std::string text = name + ": " + lossText(loss, voxel, side * voxel) + brokenText(field, loss, ctx);
     if (loss.share > 0.5 || loss.volumeLeft < 0.5) throw Error(ErrorCode::Unusable, text);
     grid.insertMeta(kLostKey, openvdb::FloatMetadata(float(loss.share)));
     const bool much = loss.share >= kWarned || whole > 0 || loss.volumeLeft < 0.9;

@@ -87,10 +87,10 @@ TEST_CASE("readPcd: counts that contradict each other or the file", "[io][hand]"
     CHECK(test::contains(grid.said, "! a.pcd: WIDTH times HEIGHT is 6, POINTS is 2"));
     const test::PointsRead more = pcdOf(fields + "POINTS 1\nDATA ascii\n1 2 3 4\n4 5 6\n7 8 9\n");
     CHECK(more.cloud.points.size() == 1);
-    CHECK(test::contains(more.said, "2 rows behind its 1 points"));
+    CHECK(test::contains(more.said, "2 rows behind its 1 point"));
     CHECK(test::contains(more.said, "1 rows have more numbers"));
     const test::PointsRead rest = pcdOf(fields + "POINTS 1\nDATA binary\n" + floats({1, 2, 3, 4, 5, 6}));
-    CHECK(test::contains(rest.said, "12 bytes behind its 1 points"));
+    CHECK(test::contains(rest.said, "12 bytes behind its 1 point"));
     const test::Thrown few = refusal(fields + "POINTS 3\nDATA binary\n" + floats({1, 2, 3, 4, 5, 6}));
     CHECK(test::contains(few.message, "claims 3 points of 12 bytes"));
     CHECK(test::contains(few.message, "it has 24 bytes"));

@@ -101,7 +101,7 @@ TEST_CASE("readRows: headers name the columns", "[io][hand]") {
     CHECK(other.attribute("id") == std::vector<float>{7, 8});
     CHECK(test::contains(other.said, "column 8 left out, for it holds words in 2 rows"));
     const test::PointsRead unknown = test::rowsOf("lat lon alt\n1 2 3\n");
-    CHECK(test::contains(unknown.said, "1 lines above its rows skipped"));
+    CHECK(test::contains(unknown.said, "1 line above its rows skipped"));
     // A comment of prose is no header.
     CHECK(equal(test::rowsOf("# turn x y z into metres\n1 2 3\n").cloud.points[0], {1, 2, 3}));
     CHECK(test::rowsOf("1 2 3 0 0 2\n", "a.xyzn").cloud.normals.size() == 1);
@@ -128,7 +128,7 @@ TEST_CASE("readRows: counts of blocks", "[io][hand]") {
         test::contains(few.said, "! a.pts: line 1 counts 3 points, 2 rows are there; the file is truncated"));
     const test::PointsRead more = test::rowsOf("1\n1 2 3\n4 5 6\n7 8 9\n", "a.pts");
     CHECK(more.cloud.points.size() == 3);
-    CHECK(test::contains(more.said, "counts 1 points, 3 rows are there; all are read"));
+    CHECK(test::contains(more.said, "counts 1 point, 3 rows are there; all are read"));
     CHECK(test::rowsOf("1\n1 2 3\n4 5 6\n", "a.pwn").cloud.normals.size() == 1);
     CHECK(test::rowsOf("1\n1 2 3\n4 5 6\n", "a.pts").cloud.points.size() == 2);
     const test::PointsRead cut = test::rowsOf("2\n1 2 3\n4 5 6\n0 0 1\n", "a.pwn");

@@ -57,6 +57,6 @@ TEST_CASE("meshOf: faces that cross themselves and faces of two corners are said
     };
     CHECK(meshOf("m.off", content, ctx).faceCount() == 2);
     REQUIRE(said.size() == 2);
-    CHECK(said[0] == "note m.off: 1 faces with fewer than three corners left out");
+    CHECK(said[0] == "note m.off: 1 face with fewer than three corners left out");
     CHECK(test::contains(said[1], "warning m.off: 1 of 3 faces cross themselves"));
 }

@@ -298,7 +298,7 @@ TEST_CASE("glTF: containers of careless writers", "[io][oracle]") {
     more.add<std::uint8_t>({1, 2, 3, 4}, "SCALAR", 5121);
     const Read cut = read(more.bytes().substr(0, more.bytes().size() - 1));
     CHECK(cut.summary.signedVolume == Approx(1));
-    CHECK(test::contains(cut.said, "the last 1 bytes of its data are missing"));
+    CHECK(test::contains(cut.said, "the last 1 byte of its data is missing"));
     refused(cube.substr(0, cube.size() - 1), "the file is truncated");
     refused(cube.substr(0, 200), "its JSON is cut off (180 of");
     refused(cube.substr(0, 15), "cut off in its header");

@@ -40,7 +40,7 @@ TEST_CASE("readMedit: line ends, comments, curved elements", "[io][error]") {
         CHECK(readMedit("a.mesh", test::replaced(whole, "\n", end)).polygons.sizes.size() == 6);
     test::Said said;
     summaryOf("TrianglesP2\n1\n1 2 3 4 5 6 0\nTriangles\n1\n1 2 3 0\n", said.ctx);
-    CHECK(said.warned("a.mesh: 1 curved elements (TrianglesP2) are not read"));
+    CHECK(said.warned("a.mesh: 1 curved element (TrianglesP2) left out"));
     CHECK(test::thrownBy([&] { summaryOf("Hexahedra\n1\n1 2 3 4 5 6 7 11 0\n"); }).code ==
           int(ErrorCode::BadData));
     CHECK(test::thrownBy([&] { summaryOf("Hexahedra\n1\n1 2 3 4 5 6 7 10 0\n"); }).code ==

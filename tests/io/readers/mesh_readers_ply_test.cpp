@@ -91,7 +91,7 @@ TEST_CASE("readPly: what is guessed or left out is said", "[io][error]") {
     {
         test::Said said;
         read(plain + "3 0 1 2\n", said);
-        CHECK(said.noted("7 bytes behind the last element are not read"));
+        CHECK(said.noted("7 bytes behind the last element left out"));
     }
     {
         test::Said said;

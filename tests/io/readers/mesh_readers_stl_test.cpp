@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/readers/mesh_readers.h"
 #include "tests/support/makers.h"
 #include "tests/support/said.h"
@@ -58,7 +59,7 @@ TEST_CASE("readStl: a wrong count gives way to the size of the file", "[io][orac
     test::Said said;
     requireBox(test::binaryStl(kBox, 0) + "x", said);
     CHECK(said.noted("the size of the file says 12"));
-    CHECK(said.noted("1 bytes behind the last of 12 triangles are not read"));
+    CHECK(said.noted("1 byte behind the last of 12 triangles left out"));
 }
 
 TEST_CASE("readStl: bytes behind the triangles are said, not read", "[io][oracle]") {
@@ -69,8 +70,7 @@ TEST_CASE("readStl: bytes behind the triangles are said, not read", "[io][oracle
         CAPTURE(behind.size());
         test::Said said;
         requireBox(test::binaryStl(kBox, 12) + behind, said);
-        CHECK(said.noted(std::to_string(behind.size()) +
-                         " bytes behind the last of 12 triangles are not read"));
+        CHECK(said.noted(countText(behind.size(), "byte") + " behind the last of 12 triangles left out"));
         CHECK(said.warnings.empty());
         test::Said solid;
         requireBox(test::binaryStl(kBox, 12, false, "solid x") + behind, solid);

@@ -55,7 +55,7 @@ TEST_CASE("pointsToSolid: a gap is closed, outliers are counted, threads do not 
     RunContext ctx;
     ctx.onMessage = [&](MessageLevel, const std::string& text) { said += text; };
     const FloatGridPtr grid = pointsToSolid(cloud, 0.5, 3, "gap.xyz", {}, ctx);
-    CHECK(test::contains(said, "gap.xyz: 1 outliers"));
+    CHECK(test::contains(said, "gap.xyz: 1 outlier"));
     // The cap above 8 has a volume of 58.6: closed somewhere between flat and round.
     CHECK(volumeOf(*grid) > 4188.8 * 0.95);
     CHECK(volumeOf(*grid) < 4188.8 * 1.02);

@@ -52,6 +52,25 @@ TEST_CASE("meshToSolid: a part thinner than a voxel is said, with the bounds and
     CHECK(lostShare(*meshToSolid(test::sphereMesh(10, 4), 1, 3, "ball")) == 0);
 }
 
+TEST_CASE("meshToSolid: into how many parts a thin solid breaks is said", "[vdb][hand]") {
+    openvdb::initialize();
+    // Two blocks with a waist of a fifth of a voxel, between the planes of voxels.
+    Mesh mesh;
+    const float ring[4][2] = {{0, 6}, {20, 0.1f}, {32, 0.1f}, {52, 6}};  // x and half a side
+    const float corner[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    for (const auto& [x, side] : ring)
+        for (const auto& [y, z] : corner) mesh.points.push_back({x, 0.5f + y * side, 0.5f + z * side});
+    mesh.quads = {{3, 2, 1, 0}, {12, 13, 14, 15}};
+    for (std::uint32_t first = 0; first < 12; first += 4)
+        for (std::uint32_t i = 0; i < 4; ++i)
+            mesh.quads.push_back({first + i, first + (i + 1) % 4, first + (i + 1) % 4 + 4, first + i + 4});
+    Said said;
+    meshToSolid(mesh, 1, 3, "waist.obj", {}, said.context());
+    REQUIRE(said.warnings.size() + said.notes.size() > 0);
+    CHECK(test::contains((said.warnings.empty() ? said.notes : said.warnings)[0],
+                         "; what is left breaks into 2 parts"));
+}
+
 TEST_CASE("meshToSolid: over half lost is an error, in one line with what helps", "[vdb][error]") {
     openvdb::initialize();
     const Mesh plate = test::boxMesh({0, 0, 0.3f}, {30, 30, 0.6f});

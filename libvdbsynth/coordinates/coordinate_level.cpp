@@ -1,0 +1,117 @@
+#include "libvdbsynth/coordinates/coordinate_level.h"
+
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/base/random.h"
+#include "libvdbsynth/coordinates/coordinate_neighbourhood.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace vdbsynth {
+namespace {
+
+constexpr int kClasses = 32;
+
+// The members of every class, in the order of their numbers.
+std::vector<std::vector<std::uint32_t>> membersOf(const std::vector<std::uint8_t>& classes) {
+    std::vector<std::vector<std::uint32_t>> members;
+    for (std::uint32_t i = 0; i < classes.size(); ++i) {
+        if (classes[i] >= members.size()) members.resize(classes[i] + 1u);
+        members[classes[i]].push_back(i);
+    }
+    return members;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> siteClasses(const SurfaceSites& sites) {
+    constexpr std::uint8_t kNone = 255;
+    std::vector<std::uint8_t> classes(sites.size(), kNone);
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+        std::uint32_t taken = 0;
+        for (std::size_t k = sites.begin[i]; k < sites.begin[i + 1]; ++k) {
+            const std::uint8_t other = classes[sites.neighbours[k]];
+            if (other != kNone) taken |= 1u << other;
+        }
+        std::uint8_t free = 0;
+        while (free < kClasses - 1 && (taken >> free & 1u)) ++free;
+        classes[i] = free;
+    }
+    return classes;
+}
+
+void correctCoordinates(CoordinateLevel& level, int passes, const CoordinateOptions& options,
+                        const RunContext& ctx) {
+    const std::vector<std::vector<std::uint32_t>> members = membersOf(siteClasses(level.sites));
+    const float jumpFactor = 1 + float(options.coherence);
+    std::vector<Vec2f> corrected;
+    SourceUse use(level, options.uniformity, options.histogram);
+    for (int pass = 0; pass < passes; ++pass)
+        for (const std::vector<std::uint32_t>& sites : members) {
+            use.count(level);
+            corrected.resize(sites.size());
+            parallelFor(ctx, sites.size(), 1024, [&](std::size_t begin, std::size_t end) {
+                std::array<float, kFeature> feature;
+                for (std::size_t m = begin; m < end; ++m) {
+                    const Neighbourhood near(level, sites[m]);
+                    corrected[m] = level.coordinate[sites[m]];
+                    if (near.empty()) continue;
+                    near.wanted(feature.data());
+                    corrected[m] = near.best(feature.data(), jumpFactor, use);
+                }
+            });
+            for (std::size_t m = 0; m < sites.size(); ++m) level.coordinate[sites[m]] = corrected[m];
+        }
+}
+
+CoordinateLevelStats levelStats(const CoordinateLevel& level, const RunContext& ctx) {
+    constexpr std::size_t kGrain = 4096;
+    const std::size_t chunks = (level.sites.size() + kGrain - 1) / kGrain;
+    std::vector<double> cost(chunks), coherent(chunks);
+    std::vector<std::size_t> counted(chunks);
+    parallelFor(ctx, level.sites.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        std::array<float, kFeature> feature;
+        for (std::size_t i = begin; i < end; ++i) {
+            const Neighbourhood near(level, i);
+            if (near.empty()) continue;
+            near.wanted(feature.data());
+            const SampleLevel& sample = level.samples[std::size_t(level.label[i])];
+            const float* own =
+                sample.feature.data() + std::size_t(sample.node(level.coordinate[i])) * kFeature;
+            double squared = 0;
+            for (std::size_t d = 0; d < kFeature; ++d)
+                squared += double((own[d] - feature[d]) * (own[d] - feature[d]));
+            bool continues = false;
+            for (std::size_t k = 0; k < near.count() && !continues; ++k)
+                continues = length(near[k].here - level.coordinate[i]) < 0.5f * float(sample.step);
+            cost[begin / kGrain] += squared;
+            coherent[begin / kGrain] += continues;
+            ++counted[begin / kGrain];
+        }
+    });
+    CoordinateLevelStats stats;
+    double sites = 0;
+    for (std::size_t c = 0; c < chunks; ++c) {
+        stats.cost += cost[c];
+        stats.coherent += coherent[c];
+        sites += double(counted[c]);
+    }
+    if (sites > 0) {
+        stats.cost /= sites;
+        stats.coherent /= sites;
+    }
+    if (!level.samples.empty()) stats.step = level.samples[0].step;
+    return stats;
+}
+
+Vec2f randomSource(const SampleLevel& sample, std::uint64_t seed, std::uint64_t site, std::uint32_t level) {
+    Random random(seed, site, 0x7e0000u + level);
+    const double m = double(sample.margin);
+    const double x = random.uniform(m, double(sample.width) - m);
+    const double y = random.uniform(m, double(sample.height) - m);
+    return {float(x * sample.stride), float(y * sample.stride)};
+}
+
+}  // namespace vdbsynth

@@ -1,0 +1,157 @@
+#pragma once
+#include "libvdbsynth/coordinates/coordinate_level.h"
+#include "libvdbsynth/coordinates/site_chart.h"
+#include "libvdbsynth/coordinates/source_use.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace vdbsynth {
+
+inline constexpr std::size_t kMostNeighbours = 16;  ///< that a site looks at
+inline constexpr float kJump = 0.01f;  ///< of the features' variance, what a jump costs however well it fits
+
+/// A neighbour as a site sees it.
+struct Continuation {
+    Vec2f here;   ///< [texels] where its coordinates continue to at the site
+    Vec2f turn;   ///< from the site's frame to its own
+    Vec2f place;  ///< [texels] of the neighbour, in the site's frame
+};
+
+/// A site's neighbourhood and its candidates.
+class Neighbourhood {
+public:
+    /// @param only  [sites] neighbours for which this is zero are left out; null: none is
+    Neighbourhood(const CoordinateLevel& level, std::size_t site, const char* only = nullptr)
+        : mLevel(level), mSample(level.samples[std::size_t(level.label[site])]), mSite(site) {
+        const SiteFrame own = siteFrame(level.sites.normal[site], level.tangent[site]);
+        const float toTexels = 1 / float(level.texel);
+        for (std::size_t k = level.sites.begin[site]; k < level.sites.begin[site + 1]; ++k) {
+            const std::uint32_t j = level.sites.neighbours[k];
+            if (level.label[j] != level.label[site] || (only && !only[j])) continue;
+            const SiteFrame frame = siteFrame(level.sites.normal[j], level.tangent[j]);
+            const Vec3f difference = level.sites.point[site] - level.sites.point[j];
+            const Vec2f offset = flattened(frame, difference) * toTexels;
+            Continuation& c = mNear[mCount];
+            c.here = level.coordinate[j] + offset;
+            c.turn = turnBetween(own, frame);
+            c.place = turned(offset, {-c.turn.x, c.turn.y});
+            if (++mCount == kMostNeighbours) break;
+        }
+    }
+
+    bool empty() const { return mCount == 0; }
+    std::size_t count() const { return mCount; }
+    const Continuation& operator[](std::size_t k) const { return mNear[k]; }
+
+    /// The feature that would fit: appearances at the taps, as the neighbours continue to them.
+    void wanted(float* feature) const {
+        std::array<float, 4 * kAppearance> taps{};
+        std::array<int, 4> found{};
+        for (std::size_t k = 0; k < mCount; ++k) {
+            const std::size_t quadrant =
+                (mNear[k].place.x >= 0 ? 1u : 0u) + (mNear[k].place.y >= 0 ? 2u : 0u);
+            addTap(k, quadrant, taps.data() + quadrant * kAppearance);
+            ++found[quadrant];
+        }
+        for (std::size_t q = 0; q < 4; ++q) {
+            if (found[q] == 0) {
+                addTap(nearestTo(q), q, taps.data() + q * kAppearance);
+                continue;
+            }
+            const float share = 1 / float(found[q]);
+            for (std::size_t d = 0; d < kAppearance; ++d) taps[q * kAppearance + d] *= share;
+        }
+        mSample.toFeature(taps.data(), feature);
+    }
+
+    /// The best of the site's own coordinate, its neighbours' continuations and the texels like these.
+    Vec2f best(const float* feature, float jumpFactor, const SourceUse& use) const {
+        const float jumpCost = kJump * float(mSample.spread);
+        Choice choice{mLevel.coordinate[mSite]};
+        const std::int32_t own = mSample.node(choice.at);
+        take(choice.at, own, costOf(own, feature) + jumpCost, use, choice);
+        for (std::size_t k = 0; k < mCount; ++k)
+            consider(mNear[k].here, feature, jumpFactor, jumpCost, use, choice);
+        return choice.at;
+    }
+
+    /// The node whose feature is nearest to one, the first of equally near ones.
+    std::int32_t nearestNode(const float* feature) const {
+        std::int32_t nearest = 0;
+        float least = std::numeric_limits<float>::infinity();
+        for (std::int32_t node = 0; node < mSample.width * mSample.height; ++node) {
+            if (!mSample.isSource(mSample.centre(node))) continue;
+            const float cost = costOf(node, feature);
+            if (cost < least) {
+                least = cost;
+                nearest = node;
+            }
+        }
+        return nearest;
+    }
+
+private:
+    void addTap(std::size_t k, std::size_t quadrant, float* sum) const {
+        const Vec2f tap = mNear[k].here + turned(kTaps[quadrant] * float(mSample.step), mNear[k].turn);
+        const float* a = mSample.appearance.data() + std::size_t(mSample.node(tap)) * kAppearance;
+        for (std::size_t d = 0; d < kAppearance; ++d) sum[d] += a[d];
+    }
+
+    std::size_t nearestTo(std::size_t quadrant) const {
+        std::size_t nearest = 0;
+        float least = std::numeric_limits<float>::infinity();
+        for (std::size_t k = 0; k < mCount; ++k) {
+            const Vec2f off = mNear[k].place - kTaps[quadrant] * float(mSample.step);
+            if (dot(off, off) < least) {
+                least = dot(off, off);
+                nearest = k;
+            }
+        }
+        return nearest;
+    }
+
+    float costOf(std::int32_t node, const float* feature) const {
+        const float* f = mSample.feature.data() + std::size_t(node) * kFeature;
+        float sum = 0;
+        for (std::size_t d = 0; d < kFeature; ++d) sum += (f[d] - feature[d]) * (f[d] - feature[d]);
+        return sum;
+    }
+
+    struct Choice {
+        Vec2f at;
+        float cost = std::numeric_limits<float>::infinity();
+    };
+
+    void take(const Vec2f& at, std::int32_t node, float cost, const SourceUse& use, Choice& choice) const {
+        if (!mSample.isSource(at)) return;
+        cost += use.cost(mLevel.label[mSite], node);
+        if (cost < choice.cost) choice = {at, cost};
+    }
+
+    void consider(const Vec2f& at, const float* feature, float jumpFactor, float jumpCost,
+                  const SourceUse& use, Choice& choice) const {
+        const std::int32_t node = mSample.node(at);
+        take(at, node, costOf(node, feature), use, choice);
+        // Texels like it, at the same place within the texel.
+        const Vec2f within = mSample.isSource(at) ? foldedIn(at) - mSample.centre(node) : Vec2f{};
+        const std::int32_t* like = mSample.similar.data() + std::size_t(node) * mSample.similarCount;
+        for (std::size_t k = 0; k < mSample.similarCount && like[k] >= 0; ++k)
+            take(mSample.centre(like[k]) + within, like[k], jumpCost + jumpFactor * costOf(like[k], feature),
+                 use, choice);
+    }
+
+    Vec2f foldedIn(const Vec2f& at) const {
+        const float w = float(mSample.width * mSample.stride), h = float(mSample.height * mSample.stride);
+        return {at.x - w * std::floor(at.x / w), at.y - h * std::floor(at.y / h)};
+    }
+
+    const CoordinateLevel& mLevel;
+    const SampleLevel& mSample;
+    std::size_t mSite;
+    std::size_t mCount = 0;
+    std::array<Continuation, kMostNeighbours> mNear;
+};
+
+}  // namespace vdbsynth

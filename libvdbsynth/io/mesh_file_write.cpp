@@ -6,6 +6,7 @@
 #include "libvdbsynth/io/readers/mesh_readers.h"
 #include "libvdbsynth/io/readers/text_scanner.h"
 #include "libvdbsynth/io/readers/whole_file.h"
+#include "libvdbsynth/io/textured_mesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -150,12 +151,17 @@ private:
     std::vector<const Attribute*> mOthers;
 };
 
-const char* const kPlyStart = "ply\nformat binary_little_endian 1.0\ncomment vdb_synth\n";
+std::string plyStart(const std::vector<std::string>& comments) {
+    std::string text = "ply\nformat binary_little_endian 1.0\ncomment vdb_synth\n";
+    for (const std::string& comment : comments) text += "comment " + comment + '\n';
+    return text;
+}
 
-std::string plyBytes(const Mesh& mesh) {
-    static const std::vector<Vec3f> none;
-    const PlyVertices vertices(mesh.points, mesh.origin, none, mesh.attributes);
-    std::string text = kPlyStart + vertices.header() + "element face " + std::to_string(mesh.faceCount()) +
+std::string plyBytes(const Mesh& mesh, const std::vector<Vec3f>& normals,
+                     const std::vector<std::string>& comments) {
+    const PlyVertices vertices(mesh.points, mesh.origin, normals, mesh.attributes);
+    std::string text = plyStart(comments) + vertices.header() + "element face " +
+                       std::to_string(mesh.faceCount()) +
                        "\nproperty list uchar uint vertex_indices\nend_header\n";
     vertices.append(text);
     for (const Triangle& t : mesh.triangles) {
@@ -196,7 +202,7 @@ void writeMesh(const std::string& path, MeshFormat format, const Mesh& mesh) {
         case MeshFormat::Obj:
             return writeWholeFile(path, objText(mesh));
         case MeshFormat::Ply:
-            return writeWholeFile(path, plyBytes(mesh));
+            return writeWholeFile(path, plyBytes(mesh, {}, {}));
         case MeshFormat::Stl:
             return writeWholeFile(path, stlBytes(mesh));
         case MeshFormat::Off:
@@ -210,14 +216,24 @@ void writeMesh(const std::string& path, MeshFormat format, const Mesh& mesh) {
     }
 }
 
-void writePointsPly(const std::string& path, const PointCloud& cloud) {
+void writePly(const std::string& path, const Mesh& mesh, const std::vector<Vec3f>& normals,
+              const std::vector<std::string>& comments) {
+    requireMesh(mesh, path);
+    writeWholeFile(path, plyBytes(mesh, normals, comments));
+}
+
+void writePly(const std::string& path, const PointCloud& cloud, const std::vector<std::string>& comments) {
     static const std::vector<Vec3f> none;
     const PlyVertices vertices(cloud.points, cloud.origin,
                                cloud.normals.size() == cloud.points.size() ? cloud.normals : none,
                                cloud.attributes);
-    std::string text = kPlyStart + vertices.header() + "end_header\n";
+    std::string text = plyStart(comments) + vertices.header() + "end_header\n";
     vertices.append(text);
     writeWholeFile(path, text);
+}
+
+void writePointsPly(const std::string& path, const PointCloud& cloud) {
+    writePly(path, cloud, {});
 }
 
 }  // namespace vdbsynth

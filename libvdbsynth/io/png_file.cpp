@@ -109,28 +109,30 @@ void appendBytes(png_structp png, png_bytep bytes, png_size_t count) {
 
 void flushNothing(png_structp) {}
 
-bool encode(png_structp png, png_infop info, int width, int height, bool alpha, const std::uint16_t* pixels,
-            std::string& bytes) {
+// A picture to encode: rows of `row` bytes, samples of 16 bits in the machine's order.
+struct Encoded {
+    int width, height, bits, type;
+    const std::uint8_t* pixels;
+    std::size_t row;
+};
+
+bool encode(png_structp png, png_infop info, const Encoded& image, std::string& bytes) {
     if (setjmp(png_jmpbuf(png))) return false;
     png_set_write_fn(png, &bytes, appendBytes, flushNothing);
-    png_set_IHDR(png, info, png_uint_32(width), png_uint_32(height), 16,
-                 alpha ? PNG_COLOR_TYPE_GRAY_ALPHA : PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE,
-                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_IHDR(png, info, png_uint_32(image.width), png_uint_32(image.height), image.bits, image.type,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_write_info(png, info);
-    png_set_swap(png);
-    const std::size_t row = std::size_t(width) * (alpha ? 2 : 1);
-    for (int y = 0; y < height; ++y)
-        png_write_row(png, reinterpret_cast<png_const_bytep>(pixels + std::size_t(y) * row));
+    if (image.bits == 16) png_set_swap(png);
+    for (int y = 0; y < image.height; ++y) png_write_row(png, image.pixels + std::size_t(y) * image.row);
     png_write_end(png, nullptr);
     return true;
 }
 
-// No gamma is recorded: the values are heights.
-bool encodeGrey(int width, int height, bool alpha, const std::vector<std::uint16_t>& pixels,
-                std::string& bytes) {
+// No gamma is recorded: the values are heights, or stored as they were read.
+bool encoded(const Encoded& image, std::string& bytes) {
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, ignore);
     png_infop info = png ? png_create_info_struct(png) : nullptr;
-    const bool good = info && encode(png, info, width, height, alpha, pixels.data(), bytes);
+    const bool good = info && encode(png, info, image, bytes);
     png_destroy_write_struct(&png, &info);
     return good;
 }
@@ -167,7 +169,30 @@ void writeGreyPng(const std::string& path, int width, int height, const std::vec
         if (alpha) pixels.push_back(missing ? 0 : 65535);
     }
     std::string bytes;
-    if (!encodeGrey(width, height, alpha, pixels, bytes))
+    const std::size_t row = std::size_t(width) * (alpha ? 4 : 2);
+    if (!encoded({width, height, 16, alpha ? PNG_COLOR_TYPE_GRAY_ALPHA : PNG_COLOR_TYPE_GRAY,
+                  reinterpret_cast<const std::uint8_t*>(pixels.data()), row},
+                 bytes))
+        throw Error(ErrorCode::Io, path + ": libpng failed");
+    writeWholeFile(path, bytes);
+}
+
+void writeImagePng(const std::string& path, int width, int height, int channels, int bits,
+                   const std::vector<float>& values) {
+    const double white = bits == 16 ? 65535 : 255;
+    std::vector<std::uint8_t> pixels(values.size() * std::size_t(bits / 8));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const auto value = std::uint16_t(std::lround(double(std::clamp(values[i], 0.f, 1.f)) * white));
+        if (bits == 16)
+            std::memcpy(&pixels[2 * i], &value, 2);
+        else
+            pixels[i] = std::uint8_t(value);
+    }
+    std::string bytes;
+    const std::size_t row = std::size_t(width) * std::size_t(channels) * std::size_t(bits / 8);
+    if (!encoded({width, height, bits, channels == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_GRAY,
+                  pixels.data(), row},
+                 bytes))
         throw Error(ErrorCode::Io, path + ": libpng failed");
     writeWholeFile(path, bytes);
 }

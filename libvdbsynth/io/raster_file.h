@@ -40,6 +40,13 @@ Raster readRaster(const std::string& path, const RasterReadOptions& options = {}
 /// Writes a grey image of 16 bits, with alpha where `values` has NaN. @param values  [height x width] 0..1
 /// @throw Error Io
 void writeGreyPng(const std::string& path, int width, int height, const std::vector<float>& values);
+/// Writes an image of one or three channels. @param bits  8 or 16   @param values  [height x width x
+/// channels] 0..1, rows from the top   @throw Error Io, Memory
+void writeImagePng(const std::string& path, int width, int height, int channels, int bits,
+                   const std::vector<float>& values);
+/// The same as floats: a channel Y, or R, G, B. @throw Error Io
+void writeImageExr(const std::string& path, int width, int height, int channels,
+                   const std::vector<float>& values);
 /// Writes a float image with a channel Y, and A (0 or 1) where `values` has NaN (written as 0).
 /// @throw Error Io
 void writeGreyExr(const std::string& path, int width, int height, const std::vector<float>& values);

@@ -49,7 +49,8 @@ TEST_CASE("parseArguments: what is refused", "[tools][error]") {
     CHECK(refusalOf([] {
               parseArguments("make", {"--labels", "1"});
           }) ==
-          "--labels: is no option of make; convert, crop, mask, match, synth, analogy, repeat, compare and "
+          "--labels: is no option of make; convert, crop, mask, match, synth, analogy, texture, repeat, "
+          "compare and "
           "render take it");
     CHECK(refusalOf([] { parseArguments("synth", {"--which=a.vdb"}); }) == "--which: is now --exemplar-map");
     CHECK(test::contains(refusalOf([] {

@@ -65,8 +65,12 @@ TEST_CASE("normalValue: of a path that is read only the file's name is left", "[
     CHECK(normal("analogy", "direction", "a/s.csv") == "s.csv");
     CHECK(normal("analogy", "direction", "a/s.vdb:v") == "s.vdb:v");
     CHECK(normal("analogy", "direction", "axis:-z") == "axis:-z");
+    CHECK(normal("texture", "channel", "rough=/secret/place/a.png") == "rough=a.png");
+    CHECK(pathIn(*findOption("texture", "channel"), "rough=/secret/a.png") == "/secret/a.png");
+    for (const char* bad : {"a.png", "=a.png", "rough=", "rough=a.vdb", "r h=a.png", "../r=a.png"})
+        CHECK(test::contains(refusal("texture", "channel", bad), "NAME=FILE"));
     for (const Option& option : allOptions()) {
-        if (!readsPath(option)) continue;
+        if (!readsPath(option) || option.kind == Kind::NamedImage) continue;
         for (const char* path : {"/secret/place/a.vdb", "../secret/a.vdb"}) {
             INFO(option.name);
             CHECK(normalValue(option, path) == "a.vdb");

@@ -85,7 +85,7 @@ TEST_CASE("optionsOf: a command takes what it can use", "[tools]") {
     CHECK(findOption("info", "voxel-size") == nullptr);
     CHECK(findOption("match", "half-width") == nullptr);
     for (const char* command :
-         {"convert", "crop", "mask", "match", "synth", "analogy", "repeat", "compare", "render"})
+         {"convert", "crop", "mask", "match", "synth", "analogy", "texture", "repeat", "compare", "render"})
         for (const char* name : {"voxel-size", "labels", "iso", "open"})
             CHECK(findOption(command, name) != nullptr);
     for (const Command* command : commands())

@@ -1,5 +1,6 @@
 #include "tools/vdb_synth/carry_options.h"
 #include "tools/vdb_synth/command.h"
+#include "tools/vdb_synth/texture_files.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/hash.h"
@@ -117,8 +118,13 @@ void repeat(Run& run) {
     run.requireInputs(2, 66);
     const std::vector<std::string> paths = run.outputPaths();
     const std::string mapPath = run.arguments.inputs[0];
+    if (readExtensionOf(mapPath) == "ply") return repeatTextureMap(run);
     if (extensionOf(mapPath) != "vdb")
-        throw Error(ErrorCode::InvalidOption, mapPath + ": a source map is a .vdb file");
+        throw Error(ErrorCode::InvalidOption,
+                    mapPath + ": a source map is a .vdb file, or of a texture a .ply file");
+    for (const char* name : {"channel", "bake", "bake-size", "bake-bits"})
+        if (run.arguments.has(name))
+            throw Error(ErrorCode::InvalidOption, std::string("--") + name + ": is of a texture's .ply map");
     for (std::size_t i = 1; i < run.arguments.inputs.size(); ++i) requireModelPath(run.arguments.inputs[i]);
     ModelOutputOptions outputs;
     outputs.adaptivity = run.arguments.real("adaptivity");
@@ -149,10 +155,11 @@ void repeat(Run& run) {
 
 }  // namespace
 
-const Command kRepeat{"repeat",
-                      "repeat MAP EXEMPLAR... -o OUT [options] | repeat MAP A2... B -o OUT (an analogy's "
-                      "map) | repeat MAP [EXEMPLAR] KEPT -o OUT (a map of synth --keep)",
-                      "Apply a saved source map again", "vdb_synth repeat map.vdb grid.vdb -o again.vdb",
-                      repeat};
+const Command kRepeat{
+    "repeat",
+    "repeat MAP EXEMPLAR... -o OUT [options] | repeat MAP A2... B -o OUT (an analogy's "
+    "map) | repeat MAP [EXEMPLAR] KEPT -o OUT (a map of synth --keep) | repeat TEXTURED.ply "
+    "IMAGE... -o OUT",
+    "Apply a saved source map again", "vdb_synth repeat map.vdb grid.vdb -o again.vdb", repeat};
 
 }  // namespace vdbsynth::cli

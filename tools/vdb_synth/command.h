@@ -92,7 +92,7 @@ std::string helpText(const Command& command);
 /// Prints data to standard output.
 void printLine(const std::string& text);
 
-extern const Command kAnalogy, kCompare, kConvert, kInfo, kCrop, kMask, kMatch, kSynth, kRepeat, kRender,
-    kMake;
+extern const Command kAnalogy, kCompare, kConvert, kInfo, kCrop, kMask, kMatch, kSynth, kTexture, kRepeat,
+    kRender, kMake;
 
 }  // namespace vdbsynth::cli

@@ -82,6 +82,7 @@ std::string camelCase(const std::string& name) {
 bool readsPath(const Option& option) {
     switch (option.kind) {
         case Kind::File:
+        case Kind::NamedImage:
         case Kind::Model:
         case Kind::Grid:
         case Kind::ModelOrGrid:
@@ -153,6 +154,9 @@ std::string allowedText(const Option& option) {
         case Kind::Direction:
             return "axis:x|y|z or axis:-x, around:x|y|z, radial, curvature, a grid FILE.vdb[:GRID], or "
                    "strokes in a .csv, .json or .ply file";
+        case Kind::NamedImage:
+            return "NAME=FILE with an image, for example roughness=rough.png; a name of letters, digits and "
+                   "_";
         case Kind::Hole:
             return "a model, a box i,j,k,I,J,K, or auto";
         case Kind::File:

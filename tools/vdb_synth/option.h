@@ -29,6 +29,7 @@ enum class Kind {
     Direction,    ///< axis:x, around:y, radial, curvature, a grid, or a file of strokes
     Hole,         ///< auto, a box, or a model
     File,         ///< a file to read, of `extensions`
+    NamedImage,   ///< NAME=FILE, an image to read
     Model,        ///< a file to read, of any kind that converts to a level set
     Grid,         ///< FILE.vdb or FILE.vdb:GRID, to read
     ModelOrGrid,  ///< either

@@ -188,7 +188,11 @@ std::string normalOutput(const Option& option, const std::string& given) {
 std::string normalPath(const Option& option, const std::string& given) {
     DirectionSource direction;
     IndexBox box;
+    std::pair<std::string, std::string> image;
     switch (option.kind) {
+        case Kind::NamedImage:
+            if (!readNamedImage(given, image)) refuseValue(option, given);
+            return image.first + "=" + fileNameOf(image.second);
         case Kind::Direction:
             if (parseDirection(given, direction)) return given;
             if (!namesGrid(given) && !isStrokeFile(given)) refuseValue(option, given);
@@ -260,6 +264,7 @@ std::string pathIn(const Option& option, const std::string& value) {
     if (option.kind == Kind::Output) return value;
     if (!readsPath(option)) return "";
     if (option.kind == Kind::Direction && parseDirection(value, direction)) return "";
+    if (option.kind == Kind::NamedImage) return value.substr(std::min(value.find('='), value.size() - 1) + 1);
     if (option.kind == Kind::Hole && (value == "auto" || readBox(value, box))) return "";
     return splitGridPath(value).file;
 }

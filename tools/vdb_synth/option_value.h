@@ -50,6 +50,8 @@ bool readProcess(const std::string& text, ExemplarOptions& options);
 GridPath splitGridPath(const std::string& text);
 /// True for FILE.vdb and FILE.vdb:GRID.
 bool namesGrid(const std::string& text);
+/// NAME=FILE: a name of letters, digits and _, and an image's path.
+bool readNamedImage(const std::string& text, std::pair<std::string, std::string>& image);
 /// One choice for each axis from a Kind::AxisChoices.
 std::array<std::string, 3> splitAxisChoices(const std::string& text);
 

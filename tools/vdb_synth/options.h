@@ -32,6 +32,7 @@ std::string inFlags(const std::string& text, const std::string& command);
 /// The parts of the table, by topic.
 std::vector<Option> modelOptionTable();
 std::vector<Option> methodOptionTable();
+std::vector<Option> textureOptionTable();
 std::vector<Option> runningOptionTable();
 
 }  // namespace vdbsynth::cli

@@ -160,7 +160,15 @@ std::vector<Option> analogyTable() {
                   "vectors or scalars FILE.vdb[:GRID], or strokes (world): .csv rows x,y,z,dx,dy,dz, .json, "
                   ".ply points with normals")
             .otherwiseIs("curvature")
-            .takenBy({"analogy"}),
+            .takenBy({"analogy", "texture"})
+            .butFor("texture",
+                    [](Option& o) {
+                        o.says(
+                             "direction of the images' rows over the target: axis:x, axis:-z, around:y, "
+                             "radial, a grid of vectors or scalars FILE.vdb[:GRID], or strokes (world): .csv "
+                             "rows x,y,z,dx,dy,dz, .json, .ply points with normals")
+                            .otherwiseIs("a smooth field");
+                    }),
         option(Kind::Direction, "exemplar-direction", "SPEC")
             .in(Group::Controls)
             .says("direction of the texture over A, given in the same ways")

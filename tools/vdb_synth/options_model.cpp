@@ -8,7 +8,8 @@ namespace {
 using Names = std::vector<std::string>;
 
 // Commands that take any geometry and convert it to a level set.
-const Names kModel{"convert", "crop", "mask", "match", "synth", "analogy", "repeat", "compare", "render"};
+const Names kModel{"convert", "crop",    "mask",   "match",   "synth",
+                   "analogy", "texture", "repeat", "compare", "render"};
 
 std::vector<Option> inputTable() {
     const auto with = [](Names names, const Names& more) {
@@ -24,6 +25,8 @@ std::vector<Option> inputTable() {
             .butFor("make", [](Option& o) { o.initially("1").noting("").in(Group::Result); })
             .butFor("mask", [](Option& o) { o.otherwiseIs("1 for box and ball"); })
             .butFor("analogy", [](Option& o) { o.says("side of a voxel of B"); })
+            .butFor("texture",
+                    [](Option& o) { o.says("side of a voxel of a level set, or of OpenVDB points"); })
             .butFor("repeat",
                     [](Option& o) {
                         o.says("side of a voxel of the exemplars, for a map of synth")
@@ -38,6 +41,10 @@ std::vector<Option> inputTable() {
             .butFor("make",
                     [](Option& o) { o.from(16, 4096).initially("64").otherwiseIs("").in(Group::Result); })
             .butFor("analogy", [](Option& o) { o.says("voxels along the longest side of B"); })
+            .butFor("texture",
+                    [](Option& o) {
+                        o.says("voxels along the longest side of a level set made from the target");
+                    })
             .butFor("repeat",
                     [](Option& o) {
                         o.says("voxels along the longest side of the exemplars, for a map of synth")
@@ -82,7 +89,7 @@ std::vector<Option> inputTable() {
             .measuredIn(Unit::Voxels)
             .says("half-width of the narrow band of the result")
             .initially("3")
-            .takenBy({"convert", "crop", "synth", "analogy", "repeat", "make"})
+            .takenBy({"convert", "crop", "synth", "analogy", "texture", "repeat", "make"})
             .butFor("repeat",
                     [](Option& o) { o.initially("").otherwiseIs("that of the run that wrote the map"); }),
     };
@@ -137,6 +144,12 @@ std::vector<Option> outputTable() {
                   "as .png or .exr")
             .repeatable()
             .takenBy({"convert", "crop", "synth", "analogy", "repeat", "make"}),
+        output("output", "FILE", {"ply", "obj", "off", "glb", "gltf", "vdb", "png", "exr"})
+            .shortly('o')
+            .says("file to write, its kind by extension: .ply points or mesh, .obj, .off, .glb, .gltf mesh, "
+                  ".vdb level set or points; with --bake .png, .exr pictures")
+            .repeatable()
+            .takenBy({"texture"}),
         output("output", "FILE.vdb", {"vdb"}).shortly('o').says("mask to write").takenBy({"mask"}),
         output("output", "FILE.png", {"png"}).shortly('o').says("picture to write").takenBy({"render"}),
         output("output", "FILE.json", {"json"})
@@ -172,6 +185,32 @@ std::vector<Option> outputTable() {
             .setsBy("volume", "imageAsVolume")
             .setsBy("points", "points")
             .takenBy({"convert"}),
+        choice("as", "KIND",
+               {{"auto", "by extension; a .ply is points"}, {"mesh", ""}, {"points", ""}, {"levelset", ""}})
+            .in(Group::Output)
+            .orAnExtension()
+            .says("what to take the target as")
+            .noting("for standard input also the extension of its kind, such as obj")
+            .initially("auto")
+            .takenBy({"texture"}),
+        flag("bake")
+            .in(Group::Output)
+            .says(
+                "bake .png and .exr outputs onto the target's own texture coordinates: the map that ends the "
+                "file's name (x_roughness.png), else the colour; <UDIM> in a name writes a picture for each "
+                "tile")
+            .takenBy({"texture", "repeat"}),
+        whole("bake-size", "N", 16, 16384)
+            .in(Group::Output)
+            .measuredIn(Unit::Pixels)
+            .says("side of a baked picture")
+            .initially("1024")
+            .takenBy({"texture", "repeat"}),
+        choice("bake-bits", "BITS", {{"8", ""}, {"16", ""}})
+            .in(Group::Output)
+            .says("bits of a value in a baked .png")
+            .initially("8")
+            .takenBy({"texture", "repeat"}),
         real("adaptivity", "A", 0, 1)
             .in(Group::Output)
             .says("merge flat parts of a mesh output")

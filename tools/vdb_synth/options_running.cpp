@@ -5,14 +5,14 @@
 namespace vdbsynth::cli {
 
 std::vector<Option> runningOptionTable() {
-    const std::vector<std::string> every{"convert", "info",   "crop",    "mask",   "match", "synth",
-                                         "analogy", "repeat", "compare", "render", "make"};
+    const std::vector<std::string> every{"convert", "info",    "crop",   "mask",    "match",  "synth",
+                                         "analogy", "texture", "repeat", "compare", "render", "make"};
     std::vector<Option> table{
         option(Kind::Seed, "seed", "N")
             .says("seed of everything random")
             .initially("0")
             .noting("the same seed gives the same bytes")
-            .takenBy({"convert", "synth", "analogy", "make", "compare"}),
+            .takenBy({"convert", "synth", "analogy", "texture", "make", "compare"}),
         whole("threads", "N", 0, 1024)
             .says("number of threads")
             .initially("0")

@@ -1,6 +1,7 @@
 // Readers of option_value.h.
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/path.h"
+#include "libvdbsynth/io/raster_file.h"
 #include "tools/vdb_synth/option_value.h"
 
 #include <algorithm>
@@ -48,6 +49,16 @@ std::vector<std::string> splitAtCommas(const std::string& text) {
         parts.push_back(text.substr(begin, comma - begin));
     parts.push_back(text.substr(begin));
     return parts;
+}
+
+bool readNamedImage(const std::string& text, std::pair<std::string, std::string>& image) {
+    const std::size_t equals = text.find('=');
+    if (equals == 0 || equals == std::string::npos) return false;
+    image = {text.substr(0, equals), text.substr(equals + 1)};
+    const auto plain = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+    };
+    return std::all_of(image.first.begin(), image.first.end(), plain) && isRasterPath(image.second);
 }
 
 bool readLengths(const std::string& text, std::vector<double>& lengths) {

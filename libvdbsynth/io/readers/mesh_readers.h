@@ -2,6 +2,7 @@
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/geometry/mesh.h"
 #include "libvdbsynth/io/readers/mesh_content.h"
+#include "libvdbsynth/io/textured_mesh.h"
 
 #include <string>
 
@@ -19,5 +20,8 @@ MeshContent readStl(const std::string& path, const std::string& content, const R
 
 // The content of a .glb or .gltf file. The same mesh gives the same bytes.
 std::string gltfBytes(const Mesh& mesh, bool binary);
+// The same with pictures: each part shows those of its first triangle, and has one attribute `uv` a vertex.
+std::string texturedGltfBytes(const std::vector<TexturedMesh>& parts,
+                              const std::vector<MeshPictures>& materials, bool binary);
 
 }  // namespace vdbsynth

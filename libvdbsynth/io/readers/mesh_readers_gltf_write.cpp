@@ -60,10 +60,10 @@ std::string asciiOf(std::string name) {
     return name;
 }
 
-void addAttributes(tinygltf::Model& model, const Mesh& mesh, tinygltf::Primitive& primitive) {
+void addAttributes(tinygltf::Model& model, const Mesh& mesh, bool pictured, tinygltf::Primitive& primitive) {
     for (const Attribute& attribute : mesh.attributes) {
         const bool texture = attribute.name == "uv" && attribute.width == 2,
-                   colour = attribute.name == "Cd" && attribute.width == 3;
+                   colour = attribute.name == "Cd" && attribute.width == 3 && !pictured;
         std::vector<float> values = attribute.values;
         for (std::size_t i = 1; texture && i < values.size(); i += 2) values[i] = 1 - values[i];
         primitive.attributes[texture  ? "TEXCOORD_0"
@@ -73,15 +73,9 @@ void addAttributes(tinygltf::Model& model, const Mesh& mesh, tinygltf::Primitive
     }
 }
 
-}  // namespace
-
-std::string gltfBytes(const Mesh& mesh, bool binary) {
-    const std::vector<Triangle> triangles = triangulated(mesh);
-    const std::vector<Vec3f> normals = vertexNormals(mesh, triangles);
-    tinygltf::Model model;
-    model.asset.version = "2.0";
-    model.asset.generator = "vdb_synth";
-    model.buffers.emplace_back();
+// Positions, normals and attributes of the vertices; primitives share them.
+tinygltf::Primitive addVertices(tinygltf::Model& model, const Mesh& mesh, const std::vector<Vec3f>& normals,
+                                bool pictured) {
     tinygltf::Primitive primitive;
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
     const int position = addFloats(model, &mesh.points[0].x, mesh.points.size(), 3);
@@ -94,18 +88,33 @@ std::string gltfBytes(const Mesh& mesh, bool binary) {
     }
     primitive.attributes["POSITION"] = position;
     primitive.attributes["NORMAL"] = addFloats(model, &normals[0].x, normals.size(), 3);
-    addAttributes(model, mesh, primitive);
-    primitive.indices = addBlock(model, triangles.data(), triangles.size() * 3,
-                                 triangles.size() * sizeof(Triangle), TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
-                                 TINYGLTF_TYPE_SCALAR, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+    addAttributes(model, mesh, pictured, primitive);
+    return primitive;
+}
+
+int addTriangles(tinygltf::Model& model, const Triangle* first, std::size_t count) {
+    return addBlock(model, first, count * 3, count * sizeof(Triangle), TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
+                    TINYGLTF_TYPE_SCALAR, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+}
+
+tinygltf::Model startedModel() {
+    tinygltf::Model model;
+    model.asset.version = "2.0";
+    model.asset.generator = "vdb_synth";
+    model.buffers.emplace_back();
+    return model;
+}
+
+// The scene of one mesh, and the file's bytes.
+std::string finished(tinygltf::Model& model, const std::vector<tinygltf::Primitive>& primitives,
+                     const Vec3d& origin, bool binary) {
     tinygltf::Mesh made;
     made.name = "surface";
-    made.primitives.push_back(primitive);
+    made.primitives = primitives;
     model.meshes.push_back(made);
     tinygltf::Node node;
     node.name = "surface";
     node.mesh = 0;
-    const Vec3d& origin = mesh.origin;
     if (!(origin.x == 0 && origin.y == 0 && origin.z == 0)) node.translation = {origin.x, origin.y, origin.z};
     model.nodes.push_back(node);
     tinygltf::Scene scene;
@@ -118,6 +127,72 @@ std::string gltfBytes(const Mesh& mesh, bool binary) {
     if (!writer.WriteGltfSceneToStream(&model, stream, /* prettyPrint= */ false, binary))
         throw Error(ErrorCode::Solver, "the glTF file cannot be composed");
     return stream.str();
+}
+
+// A picture in the file's buffer, and a texture of it. @return the texture's index, -1 without a picture
+int addPicture(tinygltf::Model& model, const std::string& png, int sampler, const std::string& name) {
+    if (png.empty()) return -1;
+    std::vector<unsigned char>& buffer = model.buffers[0].data;
+    tinygltf::BufferView view;
+    view.buffer = 0;
+    view.byteOffset = buffer.size();
+    view.byteLength = png.size();
+    buffer.insert(buffer.end(), png.begin(), png.end());
+    buffer.resize((buffer.size() + 3) / 4 * 4);  // what follows is aligned
+    model.bufferViews.push_back(view);
+    tinygltf::Image image;
+    image.bufferView = int(model.bufferViews.size()) - 1;
+    image.mimeType = "image/png";
+    image.name = name;
+    model.images.push_back(image);
+    tinygltf::Texture texture;
+    texture.source = int(model.images.size()) - 1;
+    texture.sampler = sampler;
+    model.textures.push_back(texture);
+    return int(model.textures.size()) - 1;
+}
+
+void addMaterial(tinygltf::Model& model, const MeshPictures& pictures) {
+    tinygltf::Sampler sampler;
+    sampler.wrapS = sampler.wrapT =
+        pictures.repeats ? TINYGLTF_TEXTURE_WRAP_REPEAT : TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT;
+    sampler.magFilter = TINYGLTF_TEXTURE_FILTER_LINEAR;
+    sampler.minFilter = TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
+    model.samplers.push_back(sampler);
+    const int number = int(model.samplers.size()) - 1;
+    tinygltf::Material material;
+    material.name = asciiOf(pictures.name);
+    tinygltf::PbrMetallicRoughness& base = material.pbrMetallicRoughness;
+    base.baseColorTexture.index = addPicture(model, pictures.colour, number, "colour");
+    base.metallicRoughnessTexture.index = addPicture(model, pictures.roughness, number, "roughness");
+    base.metallicFactor = pictures.roughness.empty() ? 0 : 1;
+    material.normalTexture.index = addPicture(model, pictures.normal, number, "normal");
+    model.materials.push_back(material);
+}
+
+}  // namespace
+
+std::string gltfBytes(const Mesh& mesh, bool binary) {
+    const std::vector<Triangle> triangles = triangulated(mesh);
+    tinygltf::Model model = startedModel();
+    tinygltf::Primitive primitive =
+        addVertices(model, mesh, vertexNormals(mesh, triangles), /* pictured= */ false);
+    primitive.indices = addTriangles(model, triangles.data(), triangles.size());
+    return finished(model, {primitive}, mesh.origin, binary);
+}
+
+std::string texturedGltfBytes(const std::vector<TexturedMesh>& parts,
+                              const std::vector<MeshPictures>& materials, bool binary) {
+    tinygltf::Model model = startedModel();
+    std::vector<tinygltf::Primitive> primitives;
+    for (const TexturedMesh& part : parts) {
+        primitives.push_back(addVertices(model, part.mesh, part.normals, /* pictured= */ true));
+        primitives.back().indices =
+            addTriangles(model, part.mesh.triangles.data(), part.mesh.triangles.size());
+        primitives.back().material = int(part.pictures.front());
+    }
+    for (const MeshPictures& pictures : materials) addMaterial(model, pictures);
+    return finished(model, primitives, parts.front().mesh.origin, binary);
 }
 
 }  // namespace vdbsynth

@@ -181,4 +181,27 @@ void writeGreyExr(const std::string& path, int width, int height, const std::vec
     writeWholeFile(path, stream.content);
 }
 
+void writeImageExr(const std::string& path, int width, int height, int channels,
+                   const std::vector<float>& values) {
+    MemoryOut stream(path);
+    {
+        Imf::Header header(width, height);
+        header.compression() = Imf::ZIP_COMPRESSION;
+        const std::size_t step = sizeof(float) * std::size_t(channels);
+        std::vector<float> copied = values;
+        const char* const names[] = {"R", "G", "B"};
+        Imf::FrameBuffer frame;
+        for (int c = 0; c < channels; ++c) {
+            const char* name = channels == 1 ? "Y" : names[c];
+            header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+            frame.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(copied.data() + c), step,
+                                          step * std::size_t(width)));
+        }
+        Imf::OutputFile file(stream, header);
+        file.setFrameBuffer(frame);
+        file.writePixels(height);
+    }
+    writeWholeFile(path, stream.content);
+}
+
 }  // namespace vdbsynth

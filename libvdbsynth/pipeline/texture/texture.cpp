@@ -1,0 +1,148 @@
+#include "libvdbsynth/pipeline/texture/texture.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/pipeline/texture/texture_steps.h"
+#include "libvdbsynth/vdb/grid_reader.h"
+
+#include <openvdb/openvdb.h>
+
+#include <cmath>
+
+namespace vdbsynth {
+namespace {
+
+const char* nameOf(TextureMethod method) {
+    switch (method) {
+        case TextureMethod::Default:
+            return "default";
+        case TextureMethod::Parameterize:
+            return "parameterize";
+        case TextureMethod::Match:
+            return "match";
+        case TextureMethod::Hybrid:
+            return "hybrid";
+    }
+    return "";
+}
+
+TextureTarget targetOf(const TextureShape& shape, const std::vector<std::int32_t>& labels,
+                       const TextureOptions& options, const RunContext& ctx) {
+    TextureTarget target;
+    target.point = shape.site;
+    target.normal = shape.normal;
+    target.label = labels;
+    if (options.direction) target.direction = siteDirections(shape, *options.direction, ctx);
+    return target;
+}
+
+TextureResult byCoordinates(const TextureTarget& target, const std::vector<SampleImage>& images,
+                            const TextureOptions& options, const RunContext& ctx) {
+    SurfaceTextureOptions surface;
+    surface.scale = options.scale;
+    surface.synthesis = options.synthesis;
+    surface.synthesis.levels = options.levels;
+    SurfaceTextureResult made = textureSurface(target, images, surface, ctx);
+    return {std::move(made.sites), made.texel, std::move(made.levels)};
+}
+
+// The one place where a method is chosen.
+TextureResult byMethod(const TextureTarget& target, const std::vector<SampleImage>& images,
+                       const TextureOptions& options, const RunContext& ctx) {
+    switch (options.method) {
+        case TextureMethod::Default:
+            return byCoordinates(target, images, options, ctx);
+        case TextureMethod::Parameterize:
+        case TextureMethod::Match:
+        case TextureMethod::Hybrid:
+            break;
+    }
+    throw Error(ErrorCode::InvalidOption, std::string("`method` ") + nameOf(options.method) +
+                                              ": is not part of this build; use default");
+}
+
+}  // namespace
+
+void validate(const TextureOptions& options) {
+    requireOption(options.scale >= 0.01 && options.scale <= 100, "scale", roundedText(options.scale, 6),
+                  "a number from 0.01 to 100");
+    requireOption(options.neighbours >= 4 && options.neighbours <= 128, "neighbours",
+                  std::to_string(options.neighbours), "a whole number from 4 to 128");
+    requireOption(options.levels >= 0 && options.levels <= 12, "levels", std::to_string(options.levels),
+                  "a whole number from 1 to 12");
+    requireOption(options.matchSample == 0 || options.matchSample >= kSmallestSample, "matchSample",
+                  std::to_string(options.matchSample), "at least 4 (texels)");
+    if (!options.direction) return;
+    using Kind = DirectionSource::Kind;
+    const DirectionSource& direction = *options.direction;
+    requireOption(direction.kind != Kind::Grid || direction.grid, "direction", "grid", "given with its grid");
+    requireOption(direction.kind != Kind::Strokes || !direction.strokes.empty(), "direction", "strokes",
+                  "given with strokes");
+}
+
+std::vector<SampleImage> imagesOf(const std::vector<TextureSample>& samples) {
+    std::vector<SampleImage> images;
+    for (const TextureSample& sample : samples) images.push_back(sample.image);
+    return images;
+}
+
+TextureResult textureShape(const TextureShape& shape, const std::vector<TextureSample>& samples,
+                           const std::vector<std::int32_t>& labels, const TextureOptions& options,
+                           const RunContext& ctx) {
+    validate(options);
+    return withThreads(ctx, [&] {
+        const TextureTarget target = targetOf(shape, labels, options, ctx);
+        return byMethod(target, imagesOf(samples), options, ctx);
+    });
+}
+
+std::vector<std::int32_t> labelsOf(const TextureShape& shape, const std::string& attribute,
+                                   std::size_t samples) {
+    const Attribute* found = findAttribute(shape.attributes, attribute);
+    if (!found || found->width != 1) {
+        std::string names;
+        for (const Attribute& other : shape.attributes)
+            if (other.width == 1) names += (names.empty() ? "" : ", ") + other.name;
+        throw Error(ErrorCode::Unusable, shape.name + ": has no attribute " + attribute +
+                                             " of one number for `regionAttribute`; it has " +
+                                             (names.empty() ? "none" : names));
+    }
+    std::vector<std::int32_t> labels(shape.site.size(), -1);
+    for (std::size_t i = 0; i < found->values.size(); ++i) {
+        const float value = found->values[i];
+        if (!(value >= 0 && value < float(samples) && value == std::floor(value)))
+            throw Error(ErrorCode::BadData, shape.name + ": its attribute " + attribute + " has the value " +
+                                                roundedText(double(value), 6) + "; labels are 0 to " +
+                                                std::to_string(samples - 1) + ", one for each sample");
+        std::int32_t& label = labels[shape.siteOf[i]];
+        if (label < 0) label = std::int32_t(value);
+    }
+    return labels;
+}
+
+std::vector<std::int32_t> labelsInside(const TextureShape& shape, const LevelSet& model) {
+    const GridReader distance = scalarReader(*model.grid, GridSampling::Linear, "region");
+    std::vector<std::int32_t> labels;
+    for (const Vec3f& p : shape.site)
+        labels.push_back(distance(shape.origin + cast<double>(p)).value.z < 0 ? 1 : 0);
+    return labels;
+}
+
+void displace(TextureShape& shape, const TextureResult& result, const std::vector<TextureSample>& samples,
+              const std::string& map, double amplitude) {
+    const SampleMap* found = nullptr;
+    for (const SampleMap& of : samples.front().maps)
+        if (of.name == map) found = &of;
+    requireOption(found != nullptr, "displace", map, "the name of a map of the sample");
+    const std::size_t channels = std::size_t(samples.front().image.channels),
+                      first = std::size_t(found->first);
+    shape.moved = shape.site;
+    for (std::size_t i = 0; i < shape.site.size(); ++i) {
+        const float height = result.sites.values[i * channels + first];
+        shape.moved[i] = shape.site[i] + shape.normal[i] * float(amplitude * double(height));
+    }
+    for (std::size_t e = 0; e < shape.points.size(); ++e) shape.points[e] = shape.moved[shape.siteOf[e]];
+}
+
+}  // namespace vdbsynth

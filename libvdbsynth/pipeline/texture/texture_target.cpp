@@ -1,0 +1,216 @@
+#include "libvdbsynth/pipeline/texture/texture_target.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/geometry/point_cloud.h"
+#include "libvdbsynth/io/mesh_file.h"
+#include "libvdbsynth/io/path.h"
+#include "libvdbsynth/io/point_file.h"
+#include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+namespace vdbsynth {
+namespace {
+
+// Unchanged if its length is 1 already, so that what is read again keeps its bits.
+Vec3f unit(const Vec3f& normal) {
+    return std::abs(length(normal) - 1) < 1e-6f ? normal : normalized(normal);
+}
+
+bool usable(const Vec3f& normal) {
+    const float size = length(normal);
+    return std::isfinite(size) && size > 1e-12f;
+}
+
+// Elements at one place get one site, numbered in the order of the elements.
+void uniteElements(TextureShape& shape) {
+    const auto key = [&](std::uint32_t i) {
+        const Vec3f& p = shape.points[i];
+        return std::make_tuple(p.x, p.y, p.z);
+    };
+    std::vector<std::uint32_t> order(shape.points.size()), first(order.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
+    for (std::size_t k = 0; k < order.size(); ++k)
+        first[order[k]] = k > 0 && key(order[k]) == key(order[k - 1]) ? first[order[k - 1]] : order[k];
+    shape.siteOf.resize(order.size());
+    shape.site.clear();
+    for (std::uint32_t i = 0; i < order.size(); ++i) {
+        if (first[i] == i) {
+            shape.siteOf[i] = std::uint32_t(shape.site.size());
+            shape.site.push_back(shape.points[i]);
+        } else {
+            shape.siteOf[i] = shape.siteOf[first[i]];
+        }
+    }
+}
+
+// Sums in doubles, in the order of the elements or faces.
+std::vector<Vec3d> summedNormals(const TextureShape& shape, const std::vector<Vec3f>& normals) {
+    std::vector<Vec3d> sums(shape.site.size());
+    for (std::size_t i = 0; i < normals.size(); ++i)
+        if (usable(normals[i]))
+            sums[shape.siteOf[i]] = sums[shape.siteOf[i]] + cast<double>(unit(normals[i]));
+    if (!normals.empty()) return sums;
+    for (const Triangle& t : shape.triangles) {
+        const Vec3d a = cast<double>(shape.points[t[0]]), b = cast<double>(shape.points[t[1]]),
+                    c = cast<double>(shape.points[t[2]]);
+        const Vec3d area = cross(b - a, c - a);
+        for (std::uint32_t v : t) sums[shape.siteOf[v]] = sums[shape.siteOf[v]] + area;
+    }
+    return sums;
+}
+
+// A place whose normals cancel, as of a sheet with two sides, takes the first usable one.
+void normalsFrom(TextureShape& shape, const std::vector<Vec3f>& normals) {
+    const std::vector<Vec3d> sums = summedNormals(shape, normals);
+    shape.normal.assign(sums.size(), Vec3f{0, 0, 0});
+    for (std::size_t i = 0; i < sums.size(); ++i)
+        if (length(sums[i]) > 1e-30)
+            shape.normal[i] = std::abs(length(sums[i]) - 1) < 1e-6 ? cast<float>(sums[i])
+                                                                   : cast<float>(normalized(sums[i]));
+    for (std::size_t i = 0; i < normals.size(); ++i)
+        if (!usable(shape.normal[shape.siteOf[i]]) && usable(normals[i]))
+            shape.normal[shape.siteOf[i]] = unit(normals[i]);
+}
+
+void estimatedNormals(TextureShape& shape, const RunContext& ctx) {
+    message(ctx, MessageLevel::Note, shape.name + ": has no normals; they are estimated from the points");
+    PointCloud cloud;
+    cloud.points = shape.site;
+    if (shape.site.size() >= 3) estimateNormals(cloud, ctx);
+    shape.normal = cloud.normals;
+    shape.normal.resize(shape.site.size(), Vec3f{0, 0, 0});
+}
+
+void fillNormals(TextureShape& shape, const RunContext& ctx) {
+    std::size_t without = 0;
+    for (Vec3f& n : shape.normal) {
+        if (!usable(n)) {
+            n = {0, 0, 1};
+            ++without;
+        }
+        n = unit(n);
+    }
+    if (without > 0)
+        message(ctx, MessageLevel::Note,
+                shape.name + ": " + std::to_string(without) +
+                    " places without a direction of their surface are taken to face up");
+}
+
+// Vertices that no face uses would be sites without a surface.
+void dropUnused(Mesh& mesh, const std::string& name, const RunContext& ctx) {
+    std::vector<char> used(mesh.points.size(), 0);
+    for (const Triangle& t : mesh.triangles)
+        for (std::uint32_t v : t) used[v] = 1;
+    std::vector<std::size_t> kept;
+    std::vector<std::uint32_t> number(mesh.points.size(), 0);
+    for (std::size_t i = 0; i < used.size(); ++i)
+        if (used[i]) {
+            number[i] = std::uint32_t(kept.size());
+            kept.push_back(i);
+        }
+    if (kept.size() == used.size()) return;
+    message(ctx, MessageLevel::Note,
+            name + ": " + std::to_string(used.size() - kept.size()) + " vertices without faces are left out");
+    std::vector<Vec3f> points;
+    for (std::size_t i : kept) points.push_back(mesh.points[i]);
+    mesh.points = std::move(points);
+    mesh.attributes = selectRows(mesh.attributes, kept);
+    for (Triangle& t : mesh.triangles)
+        for (std::uint32_t& v : t) v = number[v];
+}
+
+void takeMesh(TextureShape& shape, Mesh mesh, const RunContext& ctx) {
+    mesh.triangles = triangulated(mesh);
+    mesh.quads.clear();
+    dropUnused(mesh, shape.name, ctx);
+    shape.origin = mesh.origin;
+    shape.points = std::move(mesh.points);
+    shape.triangles = std::move(mesh.triangles);
+    shape.attributes = std::move(mesh.attributes);
+    makeSites(shape, {}, ctx);
+}
+
+template <typename Points>
+void scale(Points& points, Vec3d& origin, double by) {
+    if (by == 1) return;
+    origin = origin * by;
+    for (Vec3f& p : points) p = cast<float>(cast<double>(p) * by);
+}
+
+void takePoints(TextureShape& shape, const std::string& path, const ModelOptions& options,
+                const RunContext& ctx) {
+    PointFile file = readPoints(path, ctx);
+    if (file.invalid > 0)
+        message(ctx, MessageLevel::Note,
+                path + ": " + std::to_string(file.invalid) + " points without finite coordinates left out");
+    if (isMeshPath(path) && !holdsPoints(path))
+        message(ctx, MessageLevel::Note, path + ": its faces are left out; `as` mesh textures them");
+    scale(file.cloud.points, file.cloud.origin, options.unitScale);
+    shape.origin = file.cloud.origin;
+    shape.points = std::move(file.cloud.points);
+    shape.attributes = std::move(file.cloud.attributes);
+    makeSites(shape, file.cloud.normals, ctx);
+}
+
+void takeLevelSet(TextureShape& shape, const std::string& path, const ModelOptions& options,
+                  const RunContext& ctx) {
+    shape.model = loadModel(path, options, ctx);
+    takeMesh(shape, levelSetToMesh(*shape.model.grid, {}, ctx), ctx);
+}
+
+// A .ply is points by default, and a mesh on request.
+bool readsAsMesh(const std::string& path) {
+    return isMeshPath(path) && !holdsPoints(path);
+}
+
+}  // namespace
+
+TargetKind kindOf(const std::string& path) {
+    if (readExtensionOf(path) == "ply" || isPointPath(path) || holdsPoints(path)) return TargetKind::Points;
+    return isMeshPath(path) ? TargetKind::Mesh : TargetKind::LevelSet;
+}
+
+void makeSites(TextureShape& shape, const std::vector<Vec3f>& normals, const RunContext& ctx) {
+    uniteElements(shape);
+    const bool given = std::any_of(normals.begin(), normals.end(), usable);
+    if (given || !shape.triangles.empty())
+        normalsFrom(shape, given ? normals : std::vector<Vec3f>{});
+    else
+        estimatedNormals(shape, ctx);
+    fillNormals(shape, ctx);
+}
+
+TextureShape loadTarget(const std::string& path, std::optional<TargetKind> kind, const ModelOptions& options,
+                        const RunContext& ctx) {
+    requireModelPath(path);
+    TextureShape shape;
+    shape.name = path;
+    const TargetKind own = kindOf(path);
+    shape.kind = kind.value_or(own);
+    withThreads(ctx, [&] {
+        if (shape.kind == TargetKind::LevelSet || own == TargetKind::LevelSet) {
+            takeLevelSet(shape, path, options, ctx);
+        } else if (shape.kind == TargetKind::Mesh || own == TargetKind::Mesh) {
+            if (!readsAsMesh(path))
+                throw Error(ErrorCode::Unusable,
+                            path + ": holds points, which have no faces; `as` levelset makes a surface");
+            Mesh mesh = readMesh(path, ctx);
+            scale(mesh.points, mesh.origin, options.unitScale);
+            takeMesh(shape, std::move(mesh), ctx);
+        } else {
+            takePoints(shape, path, options, ctx);
+        }
+    });
+    if (shape.kind == TargetKind::Points) shape.triangles.clear();
+    if (shape.kind != TargetKind::LevelSet) shape.model = {};
+    return shape;
+}
+
+}  // namespace vdbsynth

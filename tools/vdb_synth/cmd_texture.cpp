@@ -1,0 +1,181 @@
+#include "tools/vdb_synth/command.h"
+#include "tools/vdb_synth/direction_option.h"
+#include "tools/vdb_synth/texture_files.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/io/path.h"
+#include "libvdbsynth/pipeline/texture/texture.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <optional>
+
+namespace vdbsynth::cli {
+namespace {
+
+struct OfMethods {
+    const char* option;
+    std::vector<std::string> methods;
+};
+
+const std::vector<OfMethods> kOfMethods{{"passes", {"default"}},
+                                        {"coherence", {"default"}},
+                                        {"uniformity", {"default"}},
+                                        {"histogram", {"default"}},
+                                        {"draft", {"default"}},
+                                        {"neighbours", {"parameterize", "match", "hybrid"}},
+                                        {"levels", {"default", "match", "hybrid"}},
+                                        {"coherent", {"match"}},
+                                        {"match-sample", {"hybrid"}}};
+
+void refuseOtherMethods(const Arguments& arguments) {
+    const std::string method = arguments.text("method");
+    for (const OfMethods& of : kOfMethods)
+        if (arguments.has(of.option) &&
+            std::find(of.methods.begin(), of.methods.end(), method) == of.methods.end())
+            throw Error(ErrorCode::InvalidOption,
+                        std::string("--") + of.option + ": has no effect with --method " + method);
+    if (arguments.has("draft") && arguments.has("passes"))
+        throw Error(ErrorCode::InvalidOption, "--draft and --passes: give one of them");
+    if (arguments.has("displace") != arguments.has("amplitude"))
+        throw Error(ErrorCode::InvalidOption,
+                    "--displace and --amplitude: give both, the map and the height of its white (world)");
+}
+
+TextureMethod methodOf(const std::string& word) {
+    return word == "parameterize" ? TextureMethod::Parameterize
+           : word == "match"      ? TextureMethod::Match
+           : word == "hybrid"     ? TextureMethod::Hybrid
+                                  : TextureMethod::Default;
+}
+
+TextureOptions parseOptions(const Arguments& arguments) {
+    refuseOtherMethods(arguments);
+    TextureOptions options;
+    options.method = methodOf(arguments.text("method"));
+    options.scale = arguments.real("scale");
+    options.levels = arguments.whole("levels");
+    options.neighbours = arguments.whole("neighbours");
+    options.coherent = arguments.has("coherent");
+    options.matchSample = arguments.whole("match-sample");
+    options.synthesis.passes = arguments.has("draft") ? 0 : arguments.whole("passes");
+    options.synthesis.coherence = arguments.real("coherence");
+    options.synthesis.uniformity = arguments.real("uniformity");
+    options.synthesis.histogram = arguments.real("histogram");
+    return options;
+}
+
+// What needs no file: which image goes where, and names of maps.
+void checkRegions(const Arguments& arguments, const std::vector<SampleFiles>& files) {
+    const bool region = arguments.has("region"), attribute = arguments.has("region-attribute");
+    if (region && attribute)
+        throw Error(ErrorCode::InvalidOption, "--region and --region-attribute: give one of them");
+    if (files.size() > 1 && !region && !attribute)
+        throw Error(ErrorCode::InvalidOption,
+                    arguments.inputs[2] +
+                        ": several images need --region MODEL or --region-attribute NAME, "
+                        "which say where each goes");
+    if (region && files.size() != 2)
+        throw Error(ErrorCode::InvalidOption, "--region: needs two images, for its outside and its inside");
+    if (!arguments.has("displace")) return;
+    const std::string map = arguments.text("displace");
+    const auto& maps = files.front().maps;
+    if (std::none_of(maps.begin(), maps.end(), [&](const auto& given) { return given.first == map; }))
+        throw Error(ErrorCode::InvalidOption,
+                    "--displace " + map + ": is no map; add it with --channel " + map + "=FILE");
+}
+
+std::optional<TargetKind> kindOf(const Arguments& arguments) {
+    const std::string as = arguments.text("as");
+    if (as == "points") return TargetKind::Points;
+    if (as == "mesh") return TargetKind::Mesh;
+    if (as == "levelset") return TargetKind::LevelSet;
+    return std::nullopt;
+}
+
+Tiling tilingOf(const Arguments& arguments) {
+    const std::string tile = arguments.text("tile");
+    return tile == "yes" ? Tiling::Yes : tile == "no" ? Tiling::No : Tiling::Auto;
+}
+
+// Voxels are only those of a level set, or of OpenVDB points.
+void noteUnusedVoxels(const Run& run, const TextureShape& shape, const std::vector<std::string>& paths) {
+    const bool vdb = std::any_of(paths.begin(), paths.end(),
+                                 [](const std::string& path) { return extensionOf(path) == "vdb"; });
+    for (const char* name : {"voxel-size", "resolution", "half-width"}) {
+        const bool points = shape.kind == TargetKind::Points && (!vdb || std::string(name) != "voxel-size"),
+                   mesh = shape.kind == TargetKind::Mesh && !vdb;
+        if (run.arguments.has(name) && (points || mesh))
+            message(run.context, MessageLevel::Note,
+                    std::string("--") + name + " has no effect: no level set is made");
+    }
+}
+
+std::vector<std::int32_t> labelsFor(Run& run, const TextureShape& shape, std::size_t samples) {
+    if (run.arguments.has("region-attribute"))
+        return labelsOf(shape, run.arguments.text("region-attribute"), samples);
+    if (!run.arguments.has("region")) return {};
+    ModelOptions model;
+    if (shape.model.grid) model.voxelSize = voxelSizeOf(*shape.model.grid);
+    std::vector<std::int32_t> labels = labelsInside(shape, run.load(run.arguments.text("region"), model));
+    const auto inside = std::count(labels.begin(), labels.end(), 1);
+    if (inside == 0 || std::size_t(inside) == labels.size())
+        message(run.context, MessageLevel::Warning,
+                run.arguments.text("region") + ": " + (inside == 0 ? "none" : "all") +
+                    " of the target lies inside; one image is not used");
+    return labels;
+}
+
+void report(Run& run, const TextureShape& shape, const TextureResult& result) {
+    nlohmann::json levels = nlohmann::json::array();
+    for (const CoordinateLevelStats& level : result.levels)
+        levels.push_back({{"sites", level.sites},
+                          {"step_texels", level.step},
+                          {"coherent_share", level.coherent},
+                          {"feature_distance", level.cost}});
+    run.count("points", shape.points.size());
+    run.count("sites", shape.site.size());
+    run.count("texel", result.texel);
+    run.count("levels", levels);
+    message(run.context, MessageLevel::Note,
+            std::to_string(shape.points.size()) + (shape.triangles.empty() ? " points" : " vertices") +
+                "; a pixel of the image is " + roundedText(result.texel, 4) + " wide (world)");
+}
+
+void texture(Run& run) {
+    run.requireInputs(2, 65);
+    const Arguments& arguments = run.arguments;
+    TextureOptions options = parseOptions(arguments);
+    const std::vector<std::string> paths = run.outputPaths();
+    const std::vector<SampleFiles> files = sampleFilesOf(arguments);
+    checkRegions(arguments, files);
+    TextureOutputOptions outputs = textureOutputsOf(run);
+    requireOutputPaths(paths, outputs);
+    requireModelPath(arguments.inputs[0]);
+    run.reserveOutputs();
+    const std::vector<TextureSample> samples = loadSamples(run, files, tilingOf(arguments));
+    TextureShape shape = loadTarget(arguments.inputs[0], kindOf(arguments), outputs.model, run.context);
+    run.noteInput(arguments.inputs[0]);
+    requireOutputs(shape, paths, outputs);
+    noteUnusedVoxels(run, shape, paths);
+    if (arguments.has("direction")) options.direction = directionOf(run, "direction");
+    const std::vector<std::int32_t> labels = labelsFor(run, shape, samples.size());
+    const TextureResult result = textureShape(shape, samples, labels, options, run.context);
+    if (arguments.has("displace"))
+        displace(shape, result, samples, arguments.text("displace"), arguments.real("amplitude"));
+    outputs.metadata = run.metadata();
+    writeTextured(shape, result, samples, paths, outputs, run.outputs(), run.context);
+    report(run, shape, result);
+    run.finish();
+}
+
+}  // namespace
+
+const Command kTexture{"texture", "texture TARGET IMAGE... -o OUT [options]",
+                       "Colour points, a mesh or a level set like an image",
+                       "vdb_synth texture bunny.off brick.png -o bunny.ply -o bunny.glb -o bunny.vdb",
+                       texture};
+
+}  // namespace vdbsynth::cli

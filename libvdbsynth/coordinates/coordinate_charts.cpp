@@ -9,7 +9,11 @@ namespace {
 class Charts {
 public:
     Charts(CoordinateLevel& level, std::uint32_t number, const RunContext& ctx)
-        : mLevel(level), mNumber(number), mContext(ctx), mDone(level.sites.size(), 0) {
+        : mLevel(level),
+          mNumber(number),
+          mContext(ctx),
+          mDone(level.sites.size(), 0),
+          mInChart(level.sites.size(), 0) {
         mLevel.coordinate.assign(level.sites.size(), {});
     }
 
@@ -36,32 +40,46 @@ private:
             near.wanted(feature.data());
             mLevel.coordinate[site] = sample.centre(near.nearestNode(feature.data()));
         }
-        mDone[site] = 1;
+        mDone[site] = mInChart[site] = 1;
         mOpen.assign(1, site);
         for (std::size_t k = 0; k < mOpen.size(); ++k) grow(mOpen[k], sample);
+        for (std::uint32_t member : mOpen) mInChart[member] = 0;
     }
 
     void grow(std::uint32_t from, const SampleLevel& sample) {
-        const SiteFrame frame = siteFrame(mLevel.sites.normal[from], mLevel.tangent[from]);
         for (std::size_t k = mLevel.sites.begin[from]; k < mLevel.sites.begin[from + 1]; ++k) {
             const std::uint32_t to = mLevel.sites.neighbours[k];
             if (mDone[to]) continue;
-            const Vec2f offset = flattened(frame, mLevel.sites.point[to] - mLevel.sites.point[from]);
-            const Vec2f at = mLevel.coordinate[from] + offset * (1 / float(mLevel.texel));
-            if (mLevel.label[to] != mLevel.label[from] || !sample.isSource(at)) {
+            Placed placed;
+            if (mLevel.label[to] != mLevel.label[from] || !continues(from, to, placed) ||
+                !sample.isSource(placed.at)) {
                 mEdge.push_back(to);
                 continue;
             }
-            mLevel.coordinate[to] = at;
-            mDone[to] = 1;
+            mLevel.coordinate[to] = placed.at;
+            mLevel.tangent[to] = placed.tangent;
+            mDone[to] = mInChart[to] = 1;
             mOpen.push_back(to);
         }
+    }
+
+    // The mean of what the chart's sites around say; false where they differ, or turn from the field.
+    bool continues(std::uint32_t from, std::uint32_t to, Placed& placed) const {
+        const Vec3f& normal = mLevel.sites.normal[to];
+        const SiteFrame frame = siteFrame(mLevel.sites.normal[from], mLevel.tangent[from]);
+        const Vec2f offset = flattened(frame, mLevel.sites.point[to] - mLevel.sites.point[from]);
+        placed.at = mLevel.coordinate[from] + offset * (1 / float(mLevel.texel));
+        placed.tangent =
+            tangentNear(normal, carried(mLevel.tangent[from], mLevel.sites.normal[from], normal));
+        const Neighbourhood near(mLevel, to, mInChart.data());
+        if (near.empty()) return dot(placed.tangent, mLevel.field[to]) >= mLevel.leastCosine - 1e-5f;
+        return near.meanNear(placed, placed) == near.count();
     }
 
     CoordinateLevel& mLevel;
     std::uint32_t mNumber;
     const RunContext& mContext;
-    std::vector<char> mDone;
+    std::vector<char> mDone, mInChart;
     std::vector<std::uint32_t> mOpen, mEdge;
 };
 

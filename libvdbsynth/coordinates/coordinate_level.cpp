@@ -47,7 +47,7 @@ void correctCoordinates(CoordinateLevel& level, int passes, const CoordinateOpti
                         const RunContext& ctx) {
     const std::vector<std::vector<std::uint32_t>> members = membersOf(siteClasses(level.sites));
     const float jumpFactor = 1 + float(options.coherence);
-    std::vector<Vec2f> corrected;
+    std::vector<Placed> corrected;
     SourceUse use(level, options.uniformity, options.histogram);
     for (int pass = 0; pass < passes; ++pass)
         for (const std::vector<std::uint32_t>& sites : members) {
@@ -57,13 +57,16 @@ void correctCoordinates(CoordinateLevel& level, int passes, const CoordinateOpti
                 std::array<float, kFeature> feature;
                 for (std::size_t m = begin; m < end; ++m) {
                     const Neighbourhood near(level, sites[m]);
-                    corrected[m] = level.coordinate[sites[m]];
+                    corrected[m] = {level.coordinate[sites[m]], level.tangent[sites[m]]};
                     if (near.empty()) continue;
                     near.wanted(feature.data());
                     corrected[m] = near.best(feature.data(), jumpFactor, use);
                 }
             });
-            for (std::size_t m = 0; m < sites.size(); ++m) level.coordinate[sites[m]] = corrected[m];
+            for (std::size_t m = 0; m < sites.size(); ++m) {
+                level.coordinate[sites[m]] = corrected[m].at;
+                level.tangent[sites[m]] = corrected[m].tangent;
+            }
         }
 }
 

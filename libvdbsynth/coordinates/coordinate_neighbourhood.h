@@ -10,13 +10,23 @@
 namespace vdbsynth {
 
 inline constexpr std::size_t kMostNeighbours = 16;  ///< that a site looks at
-inline constexpr float kJump = 0.01f;  ///< of the features' variance, what a jump costs however well it fits
+inline constexpr float kSame = 0.4f;                ///< [steps] within which continuations are one
+inline constexpr float kSameTurn = 0.95f;           ///< cosine of the angle within which they are
+inline constexpr float kJump = 0.03f;  ///< of the features' variance, what a jump costs however well it fits
 
 /// A neighbour as a site sees it.
 struct Continuation {
-    Vec2f here;   ///< [texels] where its coordinates continue to at the site
-    Vec2f turn;   ///< from the site's frame to its own
-    Vec2f place;  ///< [texels] of the neighbour, in the site's frame
+    Vec2f here;           ///< [texels] where its coordinates continue to at the site
+    Vec2f turn;           ///< from the site's frame to its own
+    Vec2f place;          ///< [texels] of the neighbour, in the site's frame
+    Vec3f tangent;        ///< its tangent, carried to the site
+    bool allowed = true;  ///< its tangent is within the turn of the site's field
+};
+
+/// What a site gets.
+struct Placed {
+    Vec2f at;
+    Vec3f tangent;
 };
 
 /// A site's neighbourhood and its candidates.
@@ -37,6 +47,8 @@ public:
             c.here = level.coordinate[j] + offset;
             c.turn = turnBetween(own, frame);
             c.place = turned(offset, {-c.turn.x, c.turn.y});
+            c.tangent = carried(level.tangent[j], level.sites.normal[j], level.sites.normal[site]);
+            c.allowed = dot(c.tangent, level.field[site]) >= level.leastCosine - 1e-5f;
             if (++mCount == kMostNeighbours) break;
         }
     }
@@ -66,15 +78,40 @@ public:
         mSample.toFeature(taps.data(), feature);
     }
 
-    /// The best of the site's own coordinate, its neighbours' continuations and the texels like these.
-    Vec2f best(const float* feature, float jumpFactor, const SourceUse& use) const {
+    /// The best of the site's own place, its neighbours' continuations and the texels like these. What
+    /// continues several neighbours becomes their mean, so that charts do not shear.
+    Placed best(const float* feature, float jumpFactor, const SourceUse& use) const {
         const float jumpCost = kJump * float(mSample.spread);
-        Choice choice{mLevel.coordinate[mSite]};
-        const std::int32_t own = mSample.node(choice.at);
-        take(choice.at, own, costOf(own, feature) + jumpCost, use, choice);
+        Choice choice{{mLevel.coordinate[mSite], mLevel.tangent[mSite]}};
+        const std::int32_t own = mSample.node(choice.placed.at);
+        take(choice.placed, own, costOf(own, feature) + jumpCost, use, choice);
         for (std::size_t k = 0; k < mCount; ++k)
-            consider(mNear[k].here, feature, jumpFactor, jumpCost, use, choice);
-        return choice.at;
+            if (mNear[k].allowed)
+                consider({mNear[k].here, mNear[k].tangent}, feature, jumpFactor, jumpCost, use, choice);
+        Placed settled;
+        return meanNear(choice.placed, settled) > 0 ? settled : choice.placed;
+    }
+
+    /// The mean of the continuations within kSame steps of a place and kSameTurn of its tangent.
+    /// @return their number
+    std::size_t meanNear(const Placed& placed, Placed& mean) const {
+        const float reach = kSame * float(mSample.step);
+        Vec2f offset;
+        Vec3f tangent;
+        std::size_t count = 0;
+        for (std::size_t k = 0; k < mCount; ++k) {
+            const Vec2f off = mNear[k].here - placed.at;
+            if (dot(off, off) > reach * reach || dot(mNear[k].tangent, placed.tangent) < kSameTurn) continue;
+            offset = offset + off;
+            tangent = tangent + mNear[k].tangent;
+            ++count;
+        }
+        if (count == 0) return 0;
+        mean.at = placed.at + offset * (1 / float(count));
+        mean.tangent = tangentNear(mLevel.sites.normal[mSite], tangent);
+        if (!mSample.isSource(mean.at) || dot(mean.tangent, mLevel.field[mSite]) < mLevel.leastCosine - 1e-5f)
+            return 0;
+        return count;
     }
 
     /// The node whose feature is nearest to one, the first of equally near ones.
@@ -120,26 +157,28 @@ private:
     }
 
     struct Choice {
-        Vec2f at;
+        Placed placed;
         float cost = std::numeric_limits<float>::infinity();
     };
 
-    void take(const Vec2f& at, std::int32_t node, float cost, const SourceUse& use, Choice& choice) const {
-        if (!mSample.isSource(at)) return;
+    void take(const Placed& placed, std::int32_t node, float cost, const SourceUse& use,
+              Choice& choice) const {
+        if (!mSample.isSource(placed.at)) return;
         cost += use.cost(mLevel.label[mSite], node);
-        if (cost < choice.cost) choice = {at, cost};
+        if (cost < choice.cost) choice = {placed, cost};
     }
 
-    void consider(const Vec2f& at, const float* feature, float jumpFactor, float jumpCost,
+    void consider(const Placed& placed, const float* feature, float jumpFactor, float jumpCost,
                   const SourceUse& use, Choice& choice) const {
-        const std::int32_t node = mSample.node(at);
-        take(at, node, costOf(node, feature), use, choice);
+        const std::int32_t node = mSample.node(placed.at);
+        take(placed, node, costOf(node, feature), use, choice);
         // Texels like it, at the same place within the texel.
-        const Vec2f within = mSample.isSource(at) ? foldedIn(at) - mSample.centre(node) : Vec2f{};
+        const Vec2f within =
+            mSample.isSource(placed.at) ? foldedIn(placed.at) - mSample.centre(node) : Vec2f{};
         const std::int32_t* like = mSample.similar.data() + std::size_t(node) * mSample.similarCount;
         for (std::size_t k = 0; k < mSample.similarCount && like[k] >= 0; ++k)
-            take(mSample.centre(like[k]) + within, like[k], jumpCost + jumpFactor * costOf(like[k], feature),
-                 use, choice);
+            take({mSample.centre(like[k]) + within, placed.tangent}, like[k],
+                 jumpCost + jumpFactor * costOf(like[k], feature), use, choice);
     }
 
     Vec2f foldedIn(const Vec2f& at) const {

@@ -6,6 +6,7 @@
 #include "libvdbsynth/coordinates/coordinate_charts.h"
 #include "libvdbsynth/coordinates/coordinate_level.h"
 #include "libvdbsynth/coordinates/site_chart.h"
+#include "libvdbsynth/math/trigonometry.h"
 #include "libvdbsynth/points/site_levels.h"
 
 #include <algorithm>
@@ -46,7 +47,7 @@ double meanStep(const SurfaceSites& sites) {
         if (sites.degree(i) == 0) continue;
         const std::uint32_t last = sites.neighbours[sites.begin[i + 1] - 1];
         const double reach = double(length(sites.point[last] - sites.point[i]));
-        sum += reach * std::sqrt(3.14159265358979 / (double(sites.degree(i)) + 0.5));
+        sum += reach * std::sqrt(kPi / (double(sites.degree(i)) + 0.5));
         ++counted;
     }
     return counted > 0 ? sum / double(counted) : 0;
@@ -68,10 +69,12 @@ CoordinateLevel mergedLevel(const CoordinateLevel& fine, double cell, std::vecto
     coarse.label.assign(n, -1);
     for (std::size_t i = 0; i < fine.sites.size(); ++i) {
         const std::uint32_t p = merged.parent[i];
-        direction[p] = direction[p] + fine.tangent[i];
+        direction[p] = direction[p] + fine.field[i];
         if (coarse.label[p] < 0) coarse.label[p] = fine.label[i];
     }
-    for (std::size_t p = 0; p < n; ++p) coarse.tangent.push_back(tangentNear(merged.normal[p], direction[p]));
+    for (std::size_t p = 0; p < n; ++p) coarse.field.push_back(tangentNear(merged.normal[p], direction[p]));
+    coarse.tangent = coarse.field;
+    coarse.leastCosine = fine.leastCosine;
     coarse.sites = sitesOfPoints(std::move(merged.point), std::move(merged.normal), kSiteNeighbours, ctx);
     parent = std::move(merged.parent);
     return coarse;
@@ -123,12 +126,13 @@ void continueParents(CoordinateLevel& fine, const CoordinateLevel& coarse,
     });
 }
 
-CoordinateLevel finestLevel(CoordinateSites sites, double texel) {
+CoordinateLevel finestLevel(CoordinateSites sites, double texel, float leastCosine) {
     CoordinateLevel level;
     level.texel = texel;
     if (sites.label.empty()) sites.label.assign(sites.sites.size(), 0);
     level.sites = std::move(sites.sites);
-    level.tangent = std::move(sites.tangent);
+    level.field = level.tangent = std::move(sites.tangent);
+    level.leastCosine = leastCosine;
     level.label = std::move(sites.label);
     return level;
 }
@@ -153,6 +157,7 @@ void validate(const CoordinateOptions& options) {
     require(options.coherence >= 0 && options.coherence <= 10, "`coherence`: is not between 0 and 10");
     require(options.uniformity >= 0 && options.uniformity <= 10, "`uniformity`: is not between 0 and 10");
     require(options.histogram >= 0 && options.histogram <= 10, "`histogram`: is not between 0 and 10");
+    require(options.turn >= 0 && options.turn <= 180, "`turn`: is not between 0 and 180 degrees");
     require(options.levels >= 0 && options.levels <= 12, "`levels`: is not between 0 and 12");
 }
 
@@ -161,7 +166,8 @@ CoordinateResult synthesizeCoordinates(CoordinateSites sites, const std::vector<
                                        const RunContext& ctx) {
     validate(options);
     requireSites(sites, samples, texel);
-    Hierarchy hierarchy = hierarchyOf(finestLevel(std::move(sites), texel), samples, options, ctx);
+    Hierarchy hierarchy = hierarchyOf(
+        finestLevel(std::move(sites), texel, float(cosine(options.turn * kPi / 180))), samples, options, ctx);
     const bool dense = meanStep(hierarchy.levels[0].sites) < kDenser * texel;
     CoordinateResult result;
     Stage stage(ctx, "texture coordinates", hierarchy.levels.size());
@@ -180,6 +186,7 @@ CoordinateResult synthesizeCoordinates(CoordinateSites sites, const std::vector<
         result.levels.back().sites = level.sites.size();
     }
     result.coordinate = std::move(hierarchy.levels[0].coordinate);
+    result.tangent = std::move(hierarchy.levels[0].tangent);
     return result;
 }
 

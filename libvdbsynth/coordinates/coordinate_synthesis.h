@@ -17,7 +17,10 @@ struct CoordinateOptions {
     double uniformity = 0.25;  ///< 0..10: how much a place of the sample costs that is used twice as often as
                                ///< others, as a share of the features' variance
     double histogram = 0.75;   ///< 0..10: the same for values that are used twice as often as in the sample
-    int levels = 0;            ///< of the hierarchy, 1..12; 0: as many as the sample's size asks for
+    /// [degrees] 0..180: how far charts may turn from the sites' tangents. A field of directions bends with
+    /// the surface and between its singularities; charts that follow it exactly are sheared and break up.
+    double turn = 60;
+    int levels = 0;  ///< of the hierarchy, 1..12; 0: as many as the sample's size asks for
 };
 
 /// @throw Error InvalidOption (a field out of its range)
@@ -37,11 +40,13 @@ inline constexpr std::size_t kSiteNeighbours = 8;  ///< that coordinate synthesi
 struct CoordinateSites {
     SurfaceSites sites;               ///< with kSiteNeighbours neighbours each; fastest in Morton order
     std::vector<Vec3f> tangent;       ///< [sites] length 1, perpendicular to the normal: the direction of +u
+                                      ///< that is wanted
     std::vector<std::int32_t> label;  ///< [sites] number of the sample; empty: 0 everywhere
 };
 
 struct CoordinateResult {
     std::vector<Vec2f> coordinate;             ///< [sites] in texels of the site's sample
+    std::vector<Vec3f> tangent;                ///< [sites] of length 1, the direction of +u
     std::vector<CoordinateLevelStats> levels;  ///< coarse to fine
 };
 

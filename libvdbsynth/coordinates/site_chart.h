@@ -2,6 +2,7 @@
 #include "libvdbsynth/math/vec2.h"
 #include "libvdbsynth/points/surface_sites.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -36,6 +37,13 @@ inline Vec2f turnBetween(const SiteFrame& from, const SiteFrame& to) {
 
 inline Vec2f turned(const Vec2f& v, const Vec2f& turn) {
     return {turn.x * v.x - turn.y * v.y, turn.y * v.x + turn.x * v.y};
+}
+
+/// A vector after the smallest rotation that takes one unit normal to another [moller1999].
+inline Vec3f carried(const Vec3f& vector, const Vec3f& from, const Vec3f& to) {
+    const Vec3f axis = cross(from, to);
+    const float cosine = std::max(dot(from, to), -0.999f);
+    return vector * cosine + cross(axis, vector) + axis * (dot(axis, vector) / (1 + cosine));
 }
 
 /// A unit tangent nearest to a direction; any one where that is along the normal.

@@ -187,16 +187,17 @@ SurfaceTextureResult textureSurface(const TextureTarget& target, const std::vect
         result.texel = options.texel > 0 ? options.texel : unit * options.scale;
         sites.tangent = targetTangents(sites.sites, whole.target.direction, unit, &result.singularities, ctx);
         sites.label = std::move(whole.target.label);
-        const std::vector<Vec3f> tangent = sites.tangent;
+        CoordinateOptions synthesis = options.synthesis;
+        if (anyGiven(whole.target.direction)) synthesis.turn = std::min(synthesis.turn, kGivenTurn);
         const std::vector<std::int32_t> label = sites.label;
         CoordinateResult coordinates =
-            synthesizeCoordinates(std::move(sites), samples, result.texel, options.synthesis, ctx);
+            synthesizeCoordinates(std::move(sites), samples, result.texel, synthesis, ctx);
         result.levels = std::move(coordinates.levels);
         for (std::size_t i = 0; i < whole.place.size(); ++i) {
             const std::uint32_t p = whole.place[i];
             result.sites.sample.push_back(label.empty() ? 0 : label[p]);
             result.sites.coordinate.push_back(coordinates.coordinate[p]);
-            result.sites.tangent.push_back(tangent[p]);
+            result.sites.tangent.push_back(coordinates.tangent[p]);
         }
         result.sites.blended.assign(whole.place.size(), 0);
         readValues(result.sites, samples, result.texel > kMagnified * unit, ctx);

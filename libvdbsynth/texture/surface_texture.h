@@ -23,8 +23,12 @@ struct SurfaceTextureOptions {
     double texel = 0;  ///< [world] side of a texel on the surface, above 0; 0: the mean distance of a point
                        ///< to its nearest, times `scale`
     double scale = 1;  ///< above 0: 2 makes the texture twice as large
+    /// Its `turn` is for targets without directions; where any are given, charts turn at most kGivenTurn from
+    /// them.
     CoordinateOptions synthesis;
 };
+
+inline constexpr double kGivenTurn = 8;  ///< [degrees]
 
 struct SurfaceTextureResult {
     TexturedSites sites;                       ///< one per point of the target

@@ -16,6 +16,7 @@ CoordinateLevel planeLevel(int side, SampleImage sample, bool tileable) {
     CoordinateLevel level;
     level.sites = sitesOfPoints(plane.point, plane.normal, 8);
     level.tangent.assign(level.sites.size(), {1, 0, 0});
+    level.field = level.tangent;
     level.label.assign(level.sites.size(), 0);
     level.samples.push_back(sampleLevel(sample, 1, 0));
     return level;

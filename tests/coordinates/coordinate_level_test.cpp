@@ -15,6 +15,7 @@ CoordinateLevel planeLevel(int side, const SampleImage& sample) {
     CoordinateLevel level;
     level.sites = sitesOfPoints(plane.point, plane.normal, 8);
     level.tangent.assign(level.sites.size(), {1, 0, 0});
+    level.field = level.tangent;
     level.label.assign(level.sites.size(), 0);
     level.samples.push_back(sampleLevel(sample, 1, 2));
     return level;

@@ -14,6 +14,7 @@ CoordinateLevel copiedPlane() {
     CoordinateLevel level;
     level.sites = sitesOfPoints(plane.point, plane.normal, 8);
     level.tangent.assign(level.sites.size(), {1, 0, 0});
+    level.field = level.tangent;
     level.label.assign(level.sites.size(), 0);
     level.samples.push_back(sampleLevel(test::noiseSample(64, 64), 1, 2));
     for (const Vec3f& p : level.sites.point) level.coordinate.push_back({p.x + 10.5f, p.y + 12.5f});

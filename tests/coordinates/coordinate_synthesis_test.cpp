@@ -8,6 +8,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace vdbsynth;
@@ -103,6 +104,23 @@ TEST_CASE("synthesizeCoordinates: same bits for any number of threads, other coo
     CHECK(differs > 3000);
 }
 
+TEST_CASE("synthesizeCoordinates: charts turn no farther from the tangents than they may") {
+    const CoordinateSites sites = sitesOf(test::spiralSphere(8000, 20), {0, 0, 1});
+    for (double turn : {0.0, 10.0, 60.0}) {
+        CoordinateOptions options;
+        options.turn = turn;
+        const CoordinateResult result =
+            synthesizeCoordinates(sites, {test::noiseSample(64, 64)}, 0.7, options);
+        double most = 1;
+        for (std::size_t i = 0; i < sites.tangent.size(); ++i) {
+            most = std::min(most, double(dot(result.tangent[i], sites.tangent[i])));
+            REQUIRE(std::abs(dot(result.tangent[i], sites.sites.normal[i])) < 1e-3f);
+            REQUIRE(length(result.tangent[i]) == Approx(1).margin(1e-4));
+        }
+        CHECK(most >= std::cos(turn * 3.14159265 / 180) - 1e-3);
+    }
+}
+
 TEST_CASE("synthesizeCoordinates: degenerate sites and samples") {
     const SampleImage noise = test::noiseSample(16, 16), texel{1, 1, 3, false, {1, 0, 0}};
     CHECK(synthesizeCoordinates({}, {noise}, 1).coordinate.empty());
@@ -140,8 +158,8 @@ TEST_CASE("synthesizeCoordinates: every refusal") {
     CoordinateOptions options;
     options.passes = 21;
     CHECK(code(sites, {noise}, 1, options) == int(ErrorCode::InvalidOption));
-    for (double CoordinateOptions::*field :
-         {&CoordinateOptions::coherence, &CoordinateOptions::uniformity, &CoordinateOptions::histogram}) {
+    for (double CoordinateOptions::*field : {&CoordinateOptions::turn, &CoordinateOptions::coherence,
+                                             &CoordinateOptions::uniformity, &CoordinateOptions::histogram}) {
         options = {};
         options.*field = -1;
         CHECK(code(sites, {noise}, 1, options) == int(ErrorCode::InvalidOption));

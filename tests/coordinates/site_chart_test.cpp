@@ -30,6 +30,17 @@ TEST_CASE("turnBetween: takes a direction's coordinates in one frame to those in
     CHECK(same.y == Approx(0).margin(1e-6));
 }
 
+TEST_CASE("carried: the smallest rotation between normals, which keeps length and the axis") {
+    const Vec3f turned = carried({1, 0, 0}, {0, 0, 1}, {1, 0, 0});  // about y, x goes to -z
+    CHECK(turned.x == Approx(0).margin(1e-6));
+    CHECK(turned.z == Approx(-1));
+    const Vec3f axis = carried({0, 1, 0}, {0, 0, 1}, normalized(Vec3f{1, 0, 1}));
+    CHECK(axis.y == Approx(1));
+    const Vec3f same = carried({0.6f, 0.8f, 0}, {0, 0, 1}, {0, 0, 1});
+    CHECK(same.x == Approx(0.6));
+    CHECK(length(carried({1, 0, 0}, {0, 0, 1}, normalized(Vec3f{1, 2, 3}))) == Approx(1));
+}
+
 TEST_CASE("tangentNear: perpendicular to the normal, also for directions along it") {
     const Vec3f t = tangentNear({0, 0, 1}, {3, 0, 4});
     CHECK(t.x == 1);

@@ -165,8 +165,9 @@ double sliced(const Rows& a, const Rows& b) {
     return sum / double(kSlices);
 }
 
+// @param every  of a site's nearest one in so many counts, up to 25
 double patchRatio(const SurfaceSites& sites, const TexturedSites& result, const SampleImage& sample,
-                  double texel) {
+                  double texel, std::size_t every) {
     constexpr std::size_t kPatches = 4000, kPoints = 25;
     const std::size_t width = std::size_t(sample.channels);
     std::vector<std::vector<Vec2f>> offsets;
@@ -174,11 +175,11 @@ double patchRatio(const SurfaceSites& sites, const TexturedSites& result, const 
     for (std::size_t p = 0; p < kPatches; ++p) {
         Random random(3, p, 81);
         const std::size_t i = random.below(std::uint32_t(sites.size()));
-        if (sites.degree(i) < kPoints) continue;
+        if (sites.degree(i) < kPoints * every) continue;
         const SiteFrame frame = siteFrame(sites.normal[i], result.tangent[i]);
         std::vector<Vec2f> places;
         std::vector<float> row;
-        for (std::size_t k = sites.begin[i]; k < sites.begin[i] + kPoints; ++k) {
+        for (std::size_t k = sites.begin[i]; k < sites.begin[i] + kPoints * every; k += every) {
             const std::uint32_t j = sites.neighbours[k];
             places.push_back(flattened(frame, sites.point[j] - sites.point[i]) * float(1 / texel));
             row.insert(row.end(), result.values.begin() + std::ptrdiff_t(j * width),
@@ -217,11 +218,12 @@ SampleImage sampleOf(const Raster& raster) {
 
 TextureNumbers textureNumbers(const TextureTarget& target, const TexturedSites& result,
                               const SampleImage& sample, double texel, const RunContext& ctx) {
-    const SurfaceSites sites = sitesOfPoints(target.point, target.normal, 25, ctx);
+    const SurfaceSites sites = sitesOfPoints(target.point, target.normal, 225, ctx);
     TextureNumbers numbers;
     numbers.histogram = histogramRatio(result, sample);
     steps(sites, result, sample, texel, numbers);
-    numbers.patches = patchRatio(sites, result, sample, texel);
+    numbers.patches = patchRatio(sites, result, sample, texel, 1);
+    numbers.wide = patchRatio(sites, result, sample, texel, 9);
     return numbers;
 }
 

@@ -21,6 +21,7 @@ struct TextureNumbers {
     /// same neighbourhoods anywhere, over that of one half of the sample to the other (mean of both ways to
     /// halve it).
     double patches = 0;
+    double wide = 0;      ///< the same of 25 among the nearest 225
     double coherent = 0;  ///< share of pairs of neighbours whose coordinates continue each other
 };
 

@@ -110,6 +110,8 @@ int main(int argc, char** argv) {
             options.synthesis.uniformity = value();
         else if (text == "--histogram")
             options.synthesis.histogram = value();
+        else if (text == "--turn")
+            options.synthesis.turn = value();
         else if (text == "--similar")
             options.synthesis.similar = int(value());
         else if (text == "--coarse-passes")
@@ -127,8 +129,8 @@ int main(int argc, char** argv) {
         return 2;
     }
     const TextureTarget target = targetOf(argv[1]);
-    std::printf("%-28s %8s %8s %8s %8s %8s %9s\n", "sample", "W1", "steps", "seams", "patches", "coherent",
-                "points/s");
+    std::printf("%-28s %8s %8s %8s %8s %8s %8s %9s\n", "sample", "W1", "steps", "seams", "patches", "wide",
+                "coherent", "points/s");
     for (const std::string& path : samples) {
         const SampleImage sample = test::sampleOf(readRaster(path));
         const double begun = secondsNow();
@@ -136,9 +138,9 @@ int main(int argc, char** argv) {
         const double seconds = secondsNow() - begun;
         const test::TextureNumbers numbers =
             test::textureNumbers(target, result.sites, sample, result.texel, ctx);
-        std::printf("%-28s %8.3f %8.3f %8.3f %8.3f %8.3f %9.0f\n", path.substr(path.rfind('/') + 1).c_str(),
-                    numbers.histogram, numbers.steps, numbers.seams, numbers.patches, numbers.coherent,
-                    double(target.point.size()) / seconds);
+        std::printf("%-28s %8.3f %8.3f %8.3f %8.3f %8.3f %8.3f %9.0f\n",
+                    path.substr(path.rfind('/') + 1).c_str(), numbers.histogram, numbers.steps, numbers.seams,
+                    numbers.patches, numbers.wide, numbers.coherent, double(target.point.size()) / seconds);
         std::fflush(stdout);
     }
     return 0;

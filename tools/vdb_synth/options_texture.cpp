@@ -27,7 +27,7 @@ std::vector<Option> methodTable() {
             .takenBy(kTexture),
         real("coherence", "K", 0, 10)
             .says("preference for continuing a neighbour over the nearest match, of --method default")
-            .initially("1")
+            .initially("4")
             .takenBy(kTexture),
         whole("neighbours", "K", 4, 128)
             .says("neighbours of a point, of --method parameterize, match and hybrid")

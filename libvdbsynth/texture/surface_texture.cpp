@@ -1,10 +1,12 @@
 #include "libvdbsynth/texture/surface_texture.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/coordinates/site_chart.h"
 #include "libvdbsynth/points/site_levels.h"
 #include "libvdbsynth/surface/direction_field.h"
+#include "libvdbsynth/texture/seam_blend.h"
 
 #include <algorithm>
 #include <cmath>
@@ -129,6 +131,48 @@ void readValues(TexturedSites& sites, const std::vector<SampleImage>& samples, b
     });
 }
 
+TexturedSites placedSites(const CoordinateSites& sites, const CoordinateResult& coordinates) {
+    TexturedSites placed;
+    placed.sample = sites.label;
+    placed.sample.resize(sites.sites.size(), 0);
+    placed.coordinate = coordinates.coordinate;
+    placed.tangent = coordinates.tangent;
+    placed.blended.assign(sites.sites.size(), 0);
+    return placed;
+}
+
+// One for each point from one for each place.
+TexturedSites spreadOut(const TexturedSites& placed, const std::vector<std::uint32_t>& place,
+                        std::size_t channels) {
+    TexturedSites out;
+    out.values.reserve(place.size() * channels);
+    for (std::uint32_t p : place) {
+        out.sample.push_back(placed.sample[p]);
+        out.coordinate.push_back(placed.coordinate[p]);
+        out.tangent.push_back(placed.tangent[p]);
+        out.blended.push_back(placed.blended[p]);
+        out.values.insert(out.values.end(), placed.values.begin() + std::ptrdiff_t(p * channels),
+                          placed.values.begin() + std::ptrdiff_t((p + 1) * channels));
+    }
+    return out;
+}
+
+bool mixesSeams(const std::vector<SampleImage>& samples, SeamBlend blend, const RunContext& ctx) {
+    if (blend != SeamBlend::Automatic) return blend == SeamBlend::Histogram;
+    bool suits = true;
+    for (const SampleImage& sample : samples) {
+        const double loss = blendLoss(sample, ctx);
+        suits = suits && loss <= kBlendSuits;
+        message(ctx, MessageLevel::Detail,
+                "a mix of two places of the sample differs from it " + roundedText(loss, 3) +
+                    " times as much as one place does; " +
+                    (loss <= kBlendSuits
+                         ? "colours are mixed where charts meet"
+                         : "colours are not mixed (the limit is " + roundedText(kBlendSuits, 3) + ")"));
+    }
+    return suits;
+}
+
 }  // namespace
 
 void requireTarget(const TextureTarget& target) {
@@ -190,17 +234,16 @@ SurfaceTextureResult textureSurface(const TextureTarget& target, const std::vect
         CoordinateOptions synthesis = options.synthesis;
         if (anyGiven(whole.target.direction)) synthesis.turn = std::min(synthesis.turn, kGivenTurn);
         const std::vector<std::int32_t> label = sites.label;
-        CoordinateResult coordinates =
-            synthesizeCoordinates(std::move(sites), samples, result.texel, synthesis, ctx);
-        result.levels = std::move(coordinates.levels);
-        for (std::size_t i = 0; i < whole.place.size(); ++i) {
-            const std::uint32_t p = whole.place[i];
-            result.sites.sample.push_back(label.empty() ? 0 : label[p]);
-            result.sites.coordinate.push_back(coordinates.coordinate[p]);
-            result.sites.tangent.push_back(coordinates.tangent[p]);
-        }
-        result.sites.blended.assign(whole.place.size(), 0);
-        readValues(result.sites, samples, result.texel > kMagnified * unit, ctx);
+        const CoordinateResult coordinates =
+            synthesizeCoordinates(sites, samples, result.texel, synthesis, ctx);
+        result.levels = coordinates.levels;
+        const bool dense = result.texel > kMagnified * unit;
+        TexturedSites placed = placedSites(sites, coordinates);
+        readValues(placed, samples, dense, ctx);
+        if (!dense && mixesSeams(samples, options.blend, ctx))
+            result.blended =
+                blendSeams(sites, coordinates, samples, result.texel, placed.values, placed.blended, ctx);
+        result.sites = spreadOut(placed, whole.place, std::size_t(samples[0].channels));
         return result;
     });
 }

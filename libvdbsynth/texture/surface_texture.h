@@ -19,6 +19,13 @@ struct TextureTarget {
 /// normal that is not finite, a normal of length 0)
 void requireTarget(const TextureTarget& target);
 
+/// Whether colours are mixed where charts meet.
+enum class SeamBlend {
+    Automatic,  ///< where the samples are stochastic: blendLoss at most kBlendSuits (histogram_blend.h)
+    Off,        ///< never: every colour is one of the sample's
+    Histogram   ///< always
+};
+
 struct SurfaceTextureOptions {
     double texel = 0;  ///< [world] side of a texel on the surface, above 0; 0: the mean distance of a point
                        ///< to its nearest, times `scale`
@@ -26,6 +33,7 @@ struct SurfaceTextureOptions {
     /// Its `turn` is for targets without directions; where any are given, charts turn at most kGivenTurn from
     /// them.
     CoordinateOptions synthesis;
+    SeamBlend blend = SeamBlend::Off;  ///< seam_blend.h; charts meet well without (docs/texturing.md)
 };
 
 inline constexpr double kGivenTurn = 8;  ///< [degrees]
@@ -33,6 +41,7 @@ inline constexpr double kGivenTurn = 8;  ///< [degrees]
 struct SurfaceTextureResult {
     TexturedSites sites;                       ///< one per point of the target
     double texel = 0;                          ///< [world]
+    std::size_t blended = 0;                   ///< number of points whose colour is a mix
     std::vector<CoordinateLevelStats> levels;  ///< coarse to fine
     std::vector<Vec3f> singularities;          ///< [world] of the directions
 };

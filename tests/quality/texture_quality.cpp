@@ -112,6 +112,8 @@ int main(int argc, char** argv) {
             options.synthesis.histogram = value();
         else if (text == "--turn")
             options.synthesis.turn = value();
+        else if (text == "--blend")
+            options.blend = value() > 0 ? SeamBlend::Histogram : SeamBlend::Off;
         else if (text == "--similar")
             options.synthesis.similar = int(value());
         else if (text == "--coarse-passes")

@@ -2,6 +2,8 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/geometry/point_neighbours.h"
 #include "libvdbsynth/pipeline/texture/texture_steps.h"
+#include "libvdbsynth/points/surface_sites.h"
+#include "libvdbsynth/surface/curvature_direction.h"
 #include "libvdbsynth/vdb/grid_reader.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 
@@ -17,6 +19,7 @@ namespace {
 using Kind = DirectionSource::Kind;
 
 constexpr std::size_t kStrokeSites = 8;  // nearest sites that a stroke applies to
+constexpr std::size_t kCurvatureNeighbours = 8;
 
 GridReader directionReader(const openvdb::GridBase& grid) {
     if (GridReader vectors = vectorReader(grid, GridSampling::Linear)) return vectors;
@@ -56,10 +59,7 @@ std::vector<Vec3f> strokeDirections(const TextureShape& shape, const std::vector
 std::vector<Vec3f> siteDirections(const TextureShape& shape, const DirectionSource& source,
                                   const RunContext& ctx) {
     if (source.kind == Kind::Automatic)
-        throw Error(ErrorCode::Unusable,
-                    shape.name +
-                        ": `direction` curvature is not determined at the sites of a texture yet; "
-                        "give an axis, around an axis, radial, a grid or strokes");
+        return curvatureDirections(sitesOfPoints(shape.site, shape.normal, kCurvatureNeighbours, ctx), ctx);
     if (source.kind == Kind::Strokes) return strokeDirections(shape, source.strokes);
     const Vec3d middle = middleOf(shape);
     std::function<Vec3d(const Vec3d&)> reader = [&](const Vec3d&) { return source.axis; };

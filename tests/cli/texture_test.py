@@ -95,7 +95,7 @@ class Texture(CliTest):
         grid = json.loads(self.ok("info", "k.vdb", "--json").stdout)["grids"][0]
         self.assertEqual((grid["name"], grid["type"]), ("points", "ptdataidx32"))
         colours = {(v["red"], v["green"], v["blue"]) for v in ply_vertices(self.read("k.ply"))}
-        self.assertGreater(len(colours), 2)
+        self.assertGreater(len(colours), 1)
 
     def test_kinds_of_target(self):
         self.ok("texture", "b.vdb", "checks.png", "-o", "l.vdb", "-o", "l.ply", "-o", "l.obj", "-o", "l.off", "-o", "l.gltf")

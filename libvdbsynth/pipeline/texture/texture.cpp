@@ -44,7 +44,7 @@ TextureResult byCoordinates(const TextureTarget& target, const std::vector<Sampl
     surface.synthesis = options.synthesis;
     surface.synthesis.levels = options.levels;
     SurfaceTextureResult made = textureSurface(target, images, surface, ctx);
-    return {std::move(made.sites), made.texel, std::move(made.levels)};
+    return {std::move(made.sites), made.texel, options.scale, std::move(made.levels)};
 }
 
 // The one place where a method is chosen.

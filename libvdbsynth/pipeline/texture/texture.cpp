@@ -134,6 +134,7 @@ void displace(TextureShape& shape, const TextureResult& result, const std::vecto
     const SampleMap* found = nullptr;
     for (const SampleMap& of : samples.front().maps)
         if (of.name == map) found = &of;
+    requireOption(std::abs(amplitude) < 1e18, "amplitude", roundedText(amplitude, 6), "within 1e18 (world)");
     requireOption(found != nullptr, "displace", map, "the name of a map of the sample");
     const std::size_t channels = std::size_t(samples.front().image.channels),
                       first = std::size_t(found->first);

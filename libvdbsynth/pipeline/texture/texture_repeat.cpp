@@ -23,6 +23,7 @@ const std::string kSampleKey = "vdbsynth:sample ", kMapKey = "vdbsynth:map ", kT
 
 const char* const kColumns[] = {"source_u", "source_v", "source_exemplar", "source_tangent"};
 const char* const kBlended = "source_blended";
+constexpr int kLargest = 1 << 24;  // [texels] side of a sample
 
 // The next word of a line, cut off it.
 std::string cutWord(std::string& line) {
@@ -43,7 +44,8 @@ void readComments(const std::string& path, TextureMap& map) {
             line.erase(0, kSampleKey.size());
             RememberedSample sample;
             good = parseWhole(cutWord(line), sample.width) && parseWhole(cutWord(line), sample.height) &&
-                   sample.width > 0 && sample.height > 0;
+                   sample.width > 0 && sample.height > 0 && sample.width <= kLargest &&
+                   sample.height <= kLargest;
             sample.tileable = cutWord(line) == "tile";
             sample.name = line;
             map.samples.push_back(sample);
@@ -89,6 +91,9 @@ void readCoordinates(const std::string& path, TextureMap& map) {
             throw Error(ErrorCode::BadData, path + ": a source_exemplar of " +
                                                 roundedText(double(number), 6) + "; it has " +
                                                 std::to_string(map.samples.size()) + " samples");
+        constexpr float kFarthest = 1e7f;  // [texels] so that they fit whole numbers
+        if (!(std::abs(u.values[e]) < kFarthest && std::abs(v.values[e]) < kFarthest))
+            throw Error(ErrorCode::BadData, path + ": a source_u or source_v beyond 10 million pixels");
         sites.sample[site] = std::int32_t(number);
         sites.coordinate[site] = {u.values[e], v.values[e]};
         sites.tangent[site] = tangentOf(map.shape.normal[site], &tangent.values[3 * e]);

@@ -147,5 +147,7 @@ TEST_CASE("displace: elements move along normals, sites stay", "[pipeline]") {
     CHECK(shape.placed()[4].z == Approx(2));
     CHECK(test::thrownBy([&] { displace(shape, result, samples, "no", 1); }).code ==
           int(ErrorCode::InvalidOption));
+    CHECK(test::contains(test::thrownBy([&] { displace(shape, result, samples, "map1", 1e300); }).message,
+                         "`amplitude`"));
     CHECK(imagesOf(samples).size() == 1);
 }

@@ -12,6 +12,7 @@
 namespace vdbsynth {
 namespace {
 
+constexpr std::size_t kExamined = 100000;  // sites, about, whose figures stand for the level's
 constexpr int kClasses = 32;
 
 // The members of every class, in the order of their numbers.
@@ -68,12 +69,13 @@ void correctCoordinates(CoordinateLevel& level, int passes, const CoordinateOpti
 
 CoordinateLevelStats levelStats(const CoordinateLevel& level, const RunContext& ctx) {
     constexpr std::size_t kGrain = 4096;
+    const std::size_t stride = 1 + level.sites.size() / kExamined;
     const std::size_t chunks = (level.sites.size() + kGrain - 1) / kGrain;
     std::vector<double> cost(chunks), coherent(chunks);
     std::vector<std::size_t> counted(chunks);
     parallelFor(ctx, level.sites.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         std::array<float, kFeature> feature;
-        for (std::size_t i = begin; i < end; ++i) {
+        for (std::size_t i = begin; i < end; i += stride) {
             const Neighbourhood near(level, i);
             if (near.empty()) continue;
             near.wanted(feature.data());

@@ -23,7 +23,7 @@ std::vector<std::uint8_t> siteClasses(const SurfaceSites& sites);
 void correctCoordinates(CoordinateLevel& level, int passes, const CoordinateOptions& options,
                         const RunContext& ctx = {});
 
-/// The level's figures but the number of sites.
+/// The level's figures but the number of sites, from at most about 100 000 of them.
 CoordinateLevelStats levelStats(const CoordinateLevel& level, const RunContext& ctx = {});
 
 /// A place of the sample drawn by (seed, site, level), outside its margin.

@@ -14,16 +14,15 @@
 namespace vdbsynth {
 namespace {
 
-constexpr std::size_t kNeighbours = 8;
 constexpr double kDenser = 0.7;       // sites closer than this [texels] are not corrected
 constexpr double kCellOfStep = 1.15;  // side of a cell whose sites are a step apart, on surfaces at any slope
 constexpr double kSmallest = 8;       // [steps] along the sample's shorter side on the coarsest level
 constexpr std::size_t kFewest = 12;   // sites on the coarsest level
 
 void requireSites(const CoordinateSites& sites, const std::vector<SampleImage>& samples, double texel) {
-    const std::size_t n = sites.point.size();
+    const std::size_t n = sites.sites.size();
     if (!(texel > 0)) throw Error(ErrorCode::InvalidOption, "`texel`: is not above 0");
-    if (sites.normal.size() != n || sites.tangent.size() != n ||
+    if (sites.sites.normal.size() != n || sites.tangent.size() != n ||
         (!sites.label.empty() && sites.label.size() != n))
         throw Error(ErrorCode::ShapeMismatch, "points, normals, tangents and labels differ in number");
     if (samples.empty()) throw Error(ErrorCode::EmptyInput, "there is no sample");
@@ -73,7 +72,7 @@ CoordinateLevel mergedLevel(const CoordinateLevel& fine, double cell, std::vecto
         if (coarse.label[p] < 0) coarse.label[p] = fine.label[i];
     }
     for (std::size_t p = 0; p < n; ++p) coarse.tangent.push_back(tangentNear(merged.normal[p], direction[p]));
-    coarse.sites = sitesOfPoints(std::move(merged.point), std::move(merged.normal), kNeighbours, ctx);
+    coarse.sites = sitesOfPoints(std::move(merged.point), std::move(merged.normal), kSiteNeighbours, ctx);
     parent = std::move(merged.parent);
     return coarse;
 }
@@ -124,19 +123,13 @@ void continueParents(CoordinateLevel& fine, const CoordinateLevel& coarse,
     });
 }
 
-// The sites in Morton order, which keeps neighbours near in memory.
-CoordinateLevel finestLevel(const CoordinateSites& sites, const std::vector<std::uint32_t>& order,
-                            double texel, const RunContext& ctx) {
+CoordinateLevel finestLevel(CoordinateSites sites, double texel) {
     CoordinateLevel level;
     level.texel = texel;
-    std::vector<Vec3f> point, normal;
-    for (std::uint32_t i : order) {
-        point.push_back(sites.point[i]);
-        normal.push_back(sites.normal[i]);
-        level.tangent.push_back(sites.tangent[i]);
-        level.label.push_back(sites.label.empty() ? 0 : sites.label[i]);
-    }
-    level.sites = sitesOfPoints(std::move(point), std::move(normal), kNeighbours, ctx);
+    if (sites.label.empty()) sites.label.assign(sites.sites.size(), 0);
+    level.sites = std::move(sites.sites);
+    level.tangent = std::move(sites.tangent);
+    level.label = std::move(sites.label);
     return level;
 }
 
@@ -163,13 +156,12 @@ void validate(const CoordinateOptions& options) {
     require(options.levels >= 0 && options.levels <= 12, "`levels`: is not between 0 and 12");
 }
 
-CoordinateResult synthesizeCoordinates(const CoordinateSites& sites, const std::vector<SampleImage>& samples,
+CoordinateResult synthesizeCoordinates(CoordinateSites sites, const std::vector<SampleImage>& samples,
                                        double texel, const CoordinateOptions& options,
                                        const RunContext& ctx) {
     validate(options);
     requireSites(sites, samples, texel);
-    const std::vector<std::uint32_t> order = mortonOrder(sites.point, ctx);
-    Hierarchy hierarchy = hierarchyOf(finestLevel(sites, order, texel, ctx), samples, options, ctx);
+    Hierarchy hierarchy = hierarchyOf(finestLevel(std::move(sites), texel), samples, options, ctx);
     const bool dense = meanStep(hierarchy.levels[0].sites) < kDenser * texel;
     CoordinateResult result;
     Stage stage(ctx, "texture coordinates", hierarchy.levels.size());
@@ -187,9 +179,7 @@ CoordinateResult synthesizeCoordinates(const CoordinateSites& sites, const std::
         result.levels.push_back(levelStats(level, ctx));
         result.levels.back().sites = level.sites.size();
     }
-    result.coordinate.resize(order.size());
-    for (std::size_t i = 0; i < order.size(); ++i)
-        result.coordinate[order[i]] = hierarchy.levels[0].coordinate[i];
+    result.coordinate = std::move(hierarchy.levels[0].coordinate);
     return result;
 }
 

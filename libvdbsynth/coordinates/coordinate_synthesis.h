@@ -31,10 +31,11 @@ struct CoordinateLevelStats {
     double cost = 0;      ///< mean squared feature distance at the end, over that of two random texels
 };
 
+inline constexpr std::size_t kSiteNeighbours = 8;  ///< that coordinate synthesis looks at
+
 /// Sites with frames and the sample that each takes.
 struct CoordinateSites {
-    std::vector<Vec3f> point;         ///< [sites] world
-    std::vector<Vec3f> normal;        ///< [sites] length 1
+    SurfaceSites sites;               ///< with kSiteNeighbours neighbours each; fastest in Morton order
     std::vector<Vec3f> tangent;       ///< [sites] length 1, perpendicular to the normal: the direction of +u
     std::vector<std::int32_t> label;  ///< [sites] number of the sample; empty: 0 everywhere
 };
@@ -61,7 +62,7 @@ struct CoordinateResult {
 /// a sample), EmptyInput (no samples, no texels), Cancelled
 /// @par Cost    O(sites log sites + texels), about 2 microseconds a site and core
 /// @par Repeats same bits for any number of threads
-CoordinateResult synthesizeCoordinates(const CoordinateSites& sites, const std::vector<SampleImage>& samples,
+CoordinateResult synthesizeCoordinates(CoordinateSites sites, const std::vector<SampleImage>& samples,
                                        double texel, const CoordinateOptions& options = {},
                                        const RunContext& ctx = {});
 

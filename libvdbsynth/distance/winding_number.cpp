@@ -12,14 +12,34 @@ namespace {
 constexpr float kFar = 3;  // radii from a cluster at which its dipole stands for it
 constexpr std::uint32_t kLeafFaces = 8;
 
-// Solid angle of a triangle over 4 pi [vanoosterom1983, Eq. 8].
-double solidAngle(const Vec3d& p, const Vec3f& a, const Vec3f& b, const Vec3f& c) {
+// A sum of angles, each in (-pi, pi], kept as the product of complex numbers with these arguments and the
+// whole turns that the product's own argument lost: one arc tangent for all of them.
+class AngleSum {
+public:
+    void add(double y, double x) {
+        const double re = mRe * x - mIm * y, im = mRe * y + mIm * x;
+        // Two angles of one sign lose a turn where their sum leaves (-pi, pi].
+        if (mIm >= 0 && y >= 0 && (im < 0 || (im == 0 && re > 0 && mRe < 0))) ++mTurns;
+        if (mIm < 0 && y < 0 && im >= 0) --mTurns;
+        const double size = std::abs(re) + std::abs(im);
+        mRe = re / size;
+        mIm = im / size;
+    }
+    double turns() const { return arcTangent(mIm, mRe) / (2 * kPi) + mTurns; }
+
+private:
+    double mRe = 1, mIm = 0;
+    int mTurns = 0;
+};
+
+// Adds half the solid angle of a triangle [vanoosterom1983, Eq. 8], which as turns is its share of 4 pi.
+void addSolidAngle(AngleSum& sum, const Vec3d& p, const Vec3f& a, const Vec3f& b, const Vec3f& c) {
     const Vec3d u = cast<double>(a) - p, v = cast<double>(b) - p, w = cast<double>(c) - p;
     const double lu = length(u), lv = length(v), lw = length(w);
     const double above = dot(u, cross(v, w));
     const double below = lu * lv * lw + dot(u, v) * lw + dot(v, w) * lu + dot(w, u) * lv;
-    if (above == 0 && below == 0) return 0;
-    return arcTangent(above, below) / (2 * kPi);
+    const double size = std::abs(above) + std::abs(below);
+    if (size > 0 && std::isfinite(size)) sum.add(above / size, below / size);
 }
 
 // Solid angle of a small area at a place, over 4 pi.
@@ -95,6 +115,7 @@ std::uint32_t WindingNumber::build(std::uint32_t first, std::uint32_t count) {
 
 double WindingNumber::at(const Vec3d& point) const {
     double sum = 0;
+    AngleSum near;
     std::array<std::uint32_t, 128> stack;  // as deep as two of a halving tree of 2^32 faces
     std::size_t depth = 0;
     if (!mNodes.empty()) stack[depth++] = 0;
@@ -107,14 +128,16 @@ double WindingNumber::at(const Vec3d& point) const {
             sum += dipole(point, node.centre, node.dipole);
         } else if (node.right == 0) {
             for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-                sum += mPoints ? dipole(point, mFaces[i].a, mFaces[i].b)
-                               : solidAngle(point, mFaces[i].a, mFaces[i].b, mFaces[i].c);
+                if (mPoints)
+                    sum += dipole(point, mFaces[i].a, mFaces[i].b);
+                else
+                    addSolidAngle(near, point, mFaces[i].a, mFaces[i].b, mFaces[i].c);
         } else {
             stack[depth++] = node.right;
             stack[depth++] = index + 1;
         }
     }
-    return sum;
+    return sum + near.turns();
 }
 
 double solidShare(const Mesh& mesh, const WindingNumber& winding) {

@@ -14,7 +14,6 @@
 namespace vdbsynth {
 namespace {
 
-constexpr std::size_t kDirectNeighbours = 8;
 constexpr std::size_t kMerged = 20000;  // points from which on directions are found on fewer sites
 constexpr double kMergedCell = 2.5;     // [spacings]
 
@@ -24,7 +23,7 @@ struct Welded {
     std::vector<std::uint32_t> place;  // [points] in the welded target
 };
 
-Welded welded(const TextureTarget& target) {
+Welded welded(const TextureTarget& target, const RunContext& ctx) {
     std::vector<std::uint32_t> order(target.point.size());
     std::iota(order.begin(), order.end(), 0u);
     const auto key = [&](std::uint32_t i) {
@@ -47,7 +46,8 @@ Welded welded(const TextureTarget& target) {
     }
     Welded out;
     out.place.resize(target.point.size());
-    for (std::uint32_t i = 0; i < first.size(); ++i) {
+    // In Morton order, which keeps neighbours near in memory.
+    for (std::uint32_t i : mortonOrder(target.point, ctx)) {
         if (first[i] != i) continue;
         out.place[i] = std::uint32_t(out.target.point.size());
         out.target.point.push_back(target.point[i]);
@@ -88,7 +88,7 @@ DirectionField fieldOn(const SurfaceSites& sites, const std::vector<Vec3f>& give
 
 // The tangents of coarser sites, read at finer points: the mean over the parent and its neighbours, by
 // distance.
-std::vector<Vec3f> readBetween(const TextureTarget& fine, const SurfaceSites& coarse,
+std::vector<Vec3f> readBetween(const SurfaceSites& fine, const SurfaceSites& coarse,
                                const std::vector<Vec3f>& tangent, const std::vector<std::uint32_t>& parent,
                                double reach, const RunContext& ctx) {
     std::vector<Vec3f> out(fine.point.size());
@@ -144,29 +144,26 @@ void requireTarget(const TextureTarget& target) {
     }
 }
 
-std::vector<Vec3f> targetTangents(const TextureTarget& target, double spacing,
-                                  std::vector<Vec3f>* singularities, const RunContext& ctx) {
-    const bool direct = target.point.size() <= kMerged;
-    const double cell = kMergedCell * spacing;
-    SurfaceSites sites;
-    std::vector<Vec3f> given = target.direction;
-    std::vector<std::uint32_t> parent;
-    if (direct) {
-        sites = sitesOfPoints(target.point, target.normal, kDirectNeighbours, ctx);
-    } else {
-        CoarserSites merged = mergedByCells(target.point, target.normal, cell, ctx);
-        parent = std::move(merged.parent);
-        if (!given.empty()) {
-            given.assign(merged.point.size(), {});
-            for (std::size_t i = 0; i < parent.size(); ++i)
-                given[parent[i]] = given[parent[i]] + target.direction[i];
-        }
-        sites = sitesOfPoints(std::move(merged.point), std::move(merged.normal), kDirectNeighbours, ctx);
+std::vector<Vec3f> targetTangents(const SurfaceSites& sites, const std::vector<Vec3f>& directions,
+                                  double spacing, std::vector<Vec3f>* singularities, const RunContext& ctx) {
+    if (sites.size() <= kMerged) {
+        DirectionField field = fieldOn(sites, directions, spacing, ctx);
+        if (singularities) *singularities = std::move(field.singularities);
+        return std::move(field.tangent);
     }
-    DirectionField field = fieldOn(sites, given, direct ? spacing : cell, ctx);
+    const double cell = kMergedCell * spacing;
+    CoarserSites merged = mergedByCells(sites.point, sites.normal, cell, ctx);
+    const std::vector<std::uint32_t> parent = std::move(merged.parent);
+    std::vector<Vec3f> given;
+    if (!directions.empty()) {
+        given.assign(merged.point.size(), {});
+        for (std::size_t i = 0; i < parent.size(); ++i) given[parent[i]] = given[parent[i]] + directions[i];
+    }
+    const SurfaceSites coarse =
+        sitesOfPoints(std::move(merged.point), std::move(merged.normal), kSiteNeighbours, ctx);
+    DirectionField field = fieldOn(coarse, given, cell, ctx);
     if (singularities) *singularities = std::move(field.singularities);
-    if (direct) return std::move(field.tangent);
-    return readBetween(target, sites, field.tangent, parent, 2 * cell, ctx);
+    return readBetween(sites, coarse, field.tangent, parent, 2 * cell, ctx);
 }
 
 SurfaceTextureResult textureSurface(const TextureTarget& target, const std::vector<SampleImage>& samples,
@@ -178,27 +175,27 @@ SurfaceTextureResult textureSurface(const TextureTarget& target, const std::vect
     validate(options.synthesis);
     requireTarget(target);
     return withThreads(ctx, [&] {
-        Welded whole = welded(target);
-        // The nearest neighbours give the unit of length.
-        const double spacing =
-            meanNearestDistance(sitesOfPoints(whole.target.point, whole.target.normal, 1, ctx));
+        Welded whole = welded(target, ctx);
+        CoordinateSites sites;
+        sites.sites = sitesOfPoints(std::move(whole.target.point), std::move(whole.target.normal),
+                                    kSiteNeighbours, ctx);
+        const double spacing = meanNearestDistance(sites.sites);
         SurfaceTextureResult result;
         // A single point, or all at one place, has no spacing; any texel serves.
         const double unit = spacing > 0 ? spacing : 1;
         result.texel = options.texel > 0 ? options.texel : unit * options.scale;
-        CoordinateSites sites;
-        sites.tangent = targetTangents(whole.target, unit, &result.singularities, ctx);
-        sites.point = std::move(whole.target.point);
-        sites.normal = std::move(whole.target.normal);
+        sites.tangent = targetTangents(sites.sites, whole.target.direction, unit, &result.singularities, ctx);
         sites.label = std::move(whole.target.label);
+        const std::vector<Vec3f> tangent = sites.tangent;
+        const std::vector<std::int32_t> label = sites.label;
         CoordinateResult coordinates =
-            synthesizeCoordinates(sites, samples, result.texel, options.synthesis, ctx);
+            synthesizeCoordinates(std::move(sites), samples, result.texel, options.synthesis, ctx);
         result.levels = std::move(coordinates.levels);
         for (std::size_t i = 0; i < whole.place.size(); ++i) {
             const std::uint32_t p = whole.place[i];
-            result.sites.sample.push_back(sites.label.empty() ? 0 : sites.label[p]);
+            result.sites.sample.push_back(label.empty() ? 0 : label[p]);
             result.sites.coordinate.push_back(coordinates.coordinate[p]);
-            result.sites.tangent.push_back(sites.tangent[p]);
+            result.sites.tangent.push_back(tangent[p]);
         }
         result.sites.blended.assign(whole.place.size(), 0);
         readValues(result.sites, samples, result.texel > kMagnified * unit, ctx);

@@ -15,7 +15,7 @@ using namespace vdbsynth;
 namespace {
 
 CoordinateSites sitesOf(const test::PointShape& shape, const Vec3f& direction) {
-    CoordinateSites sites{shape.point, shape.normal, {}, {}};
+    CoordinateSites sites{sitesOfPoints(shape.point, shape.normal, kSiteNeighbours), {}, {}};
     for (const Vec3f& n : shape.normal) sites.tangent.push_back(tangentNear(n, direction));
     return sites;
 }
@@ -24,9 +24,9 @@ CoordinateSites sitesOf(const test::PointShape& shape, const Vec3f& direction) {
 double changesAlong(const CoordinateSites& sites, const CoordinateResult& result, const SampleImage& sample,
                     int axis, int side) {
     std::size_t changes = 0, pairs = 0;
-    for (std::size_t i = 0; i < sites.point.size(); ++i) {
+    for (std::size_t i = 0; i < sites.sites.point.size(); ++i) {
         const std::size_t j = i + (axis == 0 ? 1 : std::size_t(side));
-        if (j >= sites.point.size() || (axis == 0 && (i + 1) % std::size_t(side) == 0)) continue;
+        if (j >= sites.sites.point.size() || (axis == 0 && (i + 1) % std::size_t(side) == 0)) continue;
         ++pairs;
         changes += std::abs(nearestTexel(sample, result.coordinate[i])[0] -
                             nearestTexel(sample, result.coordinate[j])[0]) > 0.5f;
@@ -75,9 +75,9 @@ TEST_CASE("synthesizeCoordinates: what is used of the sample has its histogram")
 TEST_CASE("synthesizeCoordinates: labels choose the sample") {
     SampleImage dark = test::noiseSample(32, 32), light = test::noiseSample(48, 40, 2);
     CoordinateSites sites = sitesOf(test::latticePlane(60), {1, 0, 0});
-    for (const Vec3f& p : sites.point) sites.label.push_back(p.x < 30 ? 0 : 1);
+    for (const Vec3f& p : sites.sites.point) sites.label.push_back(p.x < 30 ? 0 : 1);
     const CoordinateResult result = synthesizeCoordinates(sites, {dark, light}, 1);
-    for (std::size_t i = 0; i < sites.point.size(); ++i) {
+    for (std::size_t i = 0; i < sites.sites.point.size(); ++i) {
         const Vec2f& u = result.coordinate[i];
         REQUIRE(u.x >= 0);
         REQUIRE(u.x <= (sites.label[i] == 0 ? 32 : 48));
@@ -114,8 +114,9 @@ TEST_CASE("synthesizeCoordinates: degenerate sites and samples") {
     // All at one place, and on a line.
     CoordinateSites same = sitesOf(test::randomPlane(100, 0), {1, 0, 0});
     CHECK(synthesizeCoordinates(same, {noise}, 1).coordinate.size() == 100);
-    CoordinateSites line = sitesOf(test::latticePlane(20), {1, 0, 0});
-    for (Vec3f& p : line.point) p = {p.x + 20 * p.y, 0, 0};
+    test::PointShape row = test::latticePlane(20);
+    for (Vec3f& p : row.point) p = {p.x + 20 * p.y, 0, 0};
+    const CoordinateSites line = sitesOf(row, {1, 0, 0});
     CHECK(synthesizeCoordinates(line, {noise}, 1).coordinate.size() == 400);
 }
 

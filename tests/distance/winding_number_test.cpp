@@ -44,6 +44,28 @@ TEST_CASE("WindingNumber: of a box without its top, by hand", "[geometry][oracle
     CHECK(winding.at({0.5, 0.5, 1}) == Approx(0.5).margin(1e-6));
 }
 
+TEST_CASE("WindingNumber: sheets around a place add up, one way and the other", "[geometry][oracle]") {
+    for (int sheets = 1; sheets <= 5; ++sheets)
+        for (bool inverted : {false, true}) {
+            Mesh mesh;
+            for (int k = 0; k < sheets; ++k) {
+                const float low = -float(k), high = 1 + float(k);
+                const Mesh box = test::boxMesh({low, low, low}, {high, high, high});
+                const std::uint32_t first = std::uint32_t(mesh.points.size());
+                mesh.points.insert(mesh.points.end(), box.points.begin(), box.points.end());
+                for (const Triangle& t : triangulated(box))
+                    mesh.triangles.push_back(inverted ? Triangle{t[0] + first, t[2] + first, t[1] + first}
+                                                      : Triangle{t[0] + first, t[1] + first, t[2] + first});
+            }
+            const WindingNumber winding(mesh);
+            const double expected = inverted ? -sheets : sheets;
+            for (const Vec3d& p : {Vec3d{0.5, 0.5, 0.5}, Vec3d{0.1, 0.7, 0.3}})
+                CHECK(winding.at(p) == Approx(expected).margin(1e-6));
+            // In the plane of one of the innermost box's faces.
+            CHECK(winding.at({1, 0.5, 0.5}) == Approx(expected - (inverted ? -0.5 : 0.5)).margin(1e-6));
+        }
+}
+
 TEST_CASE("WindingNumber: no faces, and faces without area", "[geometry][degenerate]") {
     CHECK(WindingNumber(Mesh{}).at({0, 0, 0}) == 0);
     Mesh line;

@@ -8,6 +8,9 @@
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/point_file.h"
 #include "libvdbsynth/io/raster_file.h"
+#include "libvdbsynth/texture/point_hybrid.h"
+#include "libvdbsynth/texture/point_matching.h"
+#include "libvdbsynth/texture/point_parameterization.h"
 #include "libvdbsynth/texture/surface_texture.h"
 #include "tests/support/point_shapes.h"
 
@@ -56,6 +59,31 @@ TextureTarget targetOf(const std::string& text) {
     return target;
 }
 
+struct Made {
+    TexturedSites sites;
+    double texel;
+};
+
+Made make(const std::string& method, const TextureTarget& target, const SampleImage& sample,
+          const SurfaceTextureOptions& options, const RunContext& ctx) {
+    if (method == "parameterize") {
+        PointParameterizationResult made = parameterizePoints(target, sample, {}, ctx);
+        return {std::move(made.sites), made.texel};
+    }
+    if (method == "match" || method == "match4") {
+        PointMatchingOptions own;
+        own.levels = method == "match4" ? 4 : 1;
+        PointMatchingResult made = matchPoints(target, sample, own, ctx);
+        return {std::move(made.sites), made.texel};
+    }
+    if (method == "hybrid") {
+        PointHybridResult made = texturePointsHybrid(target, sample, {}, ctx);
+        return {std::move(made.sites), made.texel};
+    }
+    SurfaceTextureResult made = textureSurface(target, {sample}, options, ctx);
+    return {std::move(made.sites), made.texel};
+}
+
 double secondsNow() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -65,11 +93,14 @@ double secondsNow() {
 int main(int argc, char** argv) {
     RunContext ctx;
     SurfaceTextureOptions options;
+    std::string method = "default";
     std::vector<std::string> samples;
     for (int i = 2; i < argc; ++i) {
         const std::string text = argv[i];
         const auto value = [&] { return i + 1 < argc ? std::atof(argv[++i]) : 0.0; };
-        if (text == "--seed")
+        if (text == "--method" && i + 1 < argc)
+            method = argv[++i];
+        else if (text == "--seed")
             ctx.seed = std::uint64_t(value());
         else if (text == "--coherence")
             options.synthesis.coherence = value();
@@ -90,7 +121,8 @@ int main(int argc, char** argv) {
     }
     if (argc < 3 || samples.empty()) {
         std::fprintf(stderr,
-                     "usage: texture_quality TARGET SAMPLE... [--seed N] [--coherence X] [--passes N] "
+                     "usage: texture_quality TARGET SAMPLE... [--method "
+                     "default|parameterize|match|match4|hybrid] [--seed N] [--coherence X] [--passes N] "
                      "[--similar N] [--levels N] [--uniformity X] [--histogram X]\n");
         return 2;
     }
@@ -100,7 +132,7 @@ int main(int argc, char** argv) {
     for (const std::string& path : samples) {
         const SampleImage sample = test::sampleOf(readRaster(path));
         const double begun = secondsNow();
-        const SurfaceTextureResult result = textureSurface(target, {sample}, options, ctx);
+        const Made result = make(method, target, sample, options, ctx);
         const double seconds = secondsNow() - begun;
         const test::TextureNumbers numbers =
             test::textureNumbers(target, result.sites, sample, result.texel, ctx);

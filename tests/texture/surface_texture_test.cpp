@@ -44,12 +44,12 @@ TEST_CASE("textureSurface: given directions are the tangents") {
 }
 
 TEST_CASE("textureSurface: without directions the field is smooth, with few singularities on a ball") {
-    const TextureTarget target = targetOf(test::spiralSphere(30000, 10));
+    const test::PointShape ball = test::spiralSphere(30000, 10);
+    const SurfaceSites sites = sitesOfPoints(ball.point, ball.normal, 8);
     std::vector<Vec3f> singularities;
-    const std::vector<Vec3f> tangents = targetTangents(target, 0.2, &singularities);
+    const std::vector<Vec3f> tangents = targetTangents(sites, {}, 0.2, &singularities);
     CHECK(singularities.size() >= 1);
     CHECK(singularities.size() <= 4);
-    const SurfaceSites sites = sitesOfPoints(target.point, target.normal, 4);
     std::size_t turned = 0;
     for (std::size_t i = 0; i < sites.size(); ++i)
         for (std::size_t k = sites.begin[i]; k < sites.begin[i + 1]; ++k)

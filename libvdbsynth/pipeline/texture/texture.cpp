@@ -4,6 +4,9 @@
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/pipeline/texture/texture_steps.h"
+#include "libvdbsynth/texture/point_hybrid.h"
+#include "libvdbsynth/texture/point_matching.h"
+#include "libvdbsynth/texture/point_parameterization.h"
 #include "libvdbsynth/vdb/grid_reader.h"
 
 #include <openvdb/openvdb.h>
@@ -47,19 +50,66 @@ TextureResult byCoordinates(const TextureTarget& target, const std::vector<Sampl
     return {std::move(made.sites), made.texel, options.scale, std::move(made.levels)};
 }
 
+TextureResult byParameterization(const TextureTarget& target, const SampleImage& image,
+                                 const TextureOptions& options, const RunContext& ctx) {
+    PointParameterizationOptions own;
+    own.neighbours = options.neighbours;
+    own.scale = options.scale;
+    PointParameterizationResult made = parameterizePoints(target, image, own, ctx);
+    message(ctx, MessageLevel::Note,
+            std::to_string(made.patches) + (made.patches == 1 ? " patch" : " patches") + ", " +
+                roundedText(100 * double(made.gaps) / double(target.point.size()), 3) +
+                " % of the points in gaps between them, mixed " +
+                (made.histogram ? "by histogram" : "by weight"));
+    return {std::move(made.sites), made.texel, options.scale, {}};
+}
+
+TextureResult byMatching(const TextureTarget& target, const SampleImage& image, const TextureOptions& options,
+                         const RunContext& ctx) {
+    PointMatchingOptions own;
+    own.neighbours = options.neighbours;
+    own.scale = options.scale;
+    if (options.levels > 0) own.levels = options.levels;
+    own.coherent = options.coherent;
+    PointMatchingResult made = matchPoints(target, image, own, ctx);
+    return {std::move(made.sites), made.texel, options.scale, {}};
+}
+
+TextureResult byHybrid(const TextureTarget& target, const SampleImage& image, const TextureOptions& options,
+                       const RunContext& ctx) {
+    PointHybridOptions own;
+    own.parameterization.neighbours = options.neighbours;
+    own.parameterization.scale = options.scale;
+    if (options.levels > 0) own.levels = options.levels;
+    own.coherent = options.coherent;
+    own.matchSample = options.matchSample;
+    PointHybridResult made = texturePointsHybrid(target, image, own, ctx);
+    const double points = double(target.point.size());
+    message(ctx, MessageLevel::Note,
+            std::to_string(made.patches) + (made.patches == 1 ? " patch" : " patches") + ", " +
+                roundedText(100 * double(made.gaps) / points, 3) + " % of the points in gaps, " +
+                roundedText(100 * double(made.widened) / points, 3) + " % when widened to features of " +
+                roundedText(made.featureSize, 3) + " texels");
+    return {std::move(made.sites), made.texel, options.scale, {}};
+}
+
 // The one place where a method is chosen.
 TextureResult byMethod(const TextureTarget& target, const std::vector<SampleImage>& images,
                        const TextureOptions& options, const RunContext& ctx) {
+    if (options.method != TextureMethod::Default && images.size() > 1)
+        throw Error(ErrorCode::InvalidOption, std::string("`method` ") + nameOf(options.method) +
+                                                  ": takes one image; use default for several");
     switch (options.method) {
-        case TextureMethod::Default:
-            return byCoordinates(target, images, options, ctx);
         case TextureMethod::Parameterize:
+            return byParameterization(target, images[0], options, ctx);
         case TextureMethod::Match:
+            return byMatching(target, images[0], options, ctx);
         case TextureMethod::Hybrid:
+            return byHybrid(target, images[0], options, ctx);
+        case TextureMethod::Default:
             break;
     }
-    throw Error(ErrorCode::InvalidOption, std::string("`method` ") + nameOf(options.method) +
-                                              ": is not part of this build; use default");
+    return byCoordinates(target, images, options, ctx);
 }
 
 }  // namespace

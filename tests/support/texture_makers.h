@@ -55,7 +55,6 @@ inline Mesh squareMesh(int n) {
 /// One chart over a flat shape: u is x, v is y, a texel is a unit.
 inline TextureResult flatResult(const TextureShape& shape, const TextureSample& sample) {
     TextureResult result;
-    result.scale = 4;
     const std::size_t channels = std::size_t(sample.image.channels), count = shape.site.size();
     result.sites.sample.assign(count, 0);
     result.sites.tangent.assign(count, Vec3f{1, 0, 0});

@@ -34,8 +34,8 @@ void validate(const TextureOptions& options);
 /// What texturing made of a target.
 struct TextureResult {
     TexturedSites sites;
-    double texel = 1;  ///< [world]
-    double scale = 1;  ///< texels over the spacing of the sites; over kMagnified values are read smoothly
+    double texel = 1;                          ///< [world]
+    bool smooth = true;                        ///< values were read between texels, else from the nearest
     std::vector<CoordinateLevelStats> levels;  ///< coarse to fine, of the default method
 };
 

@@ -17,9 +17,9 @@ namespace vdbsynth {
 namespace {
 
 // `vdbsynth:sample WIDTH HEIGHT tile|mirror NAME` for each sample, `vdbsynth:map NAME` for each further map,
-// `vdbsynth:texel LENGTH` and `vdbsynth:scale RATIO`.
+// `vdbsynth:texel LENGTH` and `vdbsynth:reading smooth|nearest`.
 const std::string kSampleKey = "vdbsynth:sample ", kMapKey = "vdbsynth:map ", kTexelKey = "vdbsynth:texel ",
-                  kScaleKey = "vdbsynth:scale ";
+                  kReadingKey = "vdbsynth:reading ";
 
 const char* const kColumns[] = {"source_u", "source_v", "source_exemplar", "source_tangent"};
 const char* const kBlended = "source_blended";
@@ -38,8 +38,8 @@ void readComments(const std::string& path, TextureMap& map) {
         bool good = true;
         if (line.compare(0, kTexelKey.size(), kTexelKey) == 0) {
             good = parseReal(line.substr(kTexelKey.size()), map.result.texel) && map.result.texel > 0;
-        } else if (line.compare(0, kScaleKey.size(), kScaleKey) == 0) {
-            good = parseReal(line.substr(kScaleKey.size()), map.result.scale) && map.result.scale > 0;
+        } else if (line.compare(0, kReadingKey.size(), kReadingKey) == 0) {
+            map.result.smooth = line.substr(kReadingKey.size()) != "nearest";
         } else if (line.compare(0, kSampleKey.size(), kSampleKey) == 0) {
             line.erase(0, kSampleKey.size());
             RememberedSample sample;
@@ -124,7 +124,6 @@ void readAgain(TextureResult& result, const std::vector<TextureSample>& samples,
                const std::vector<Vec2f>& ratio, const RunContext& ctx) {
     TexturedSites& sites = result.sites;
     const std::size_t channels = std::size_t(samples[0].image.channels), count = sites.sample.size();
-    const bool smooth = result.scale > kMagnified;
     sites.values.assign(count * channels, 0);
     parallelFor(ctx, count, 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -132,7 +131,7 @@ void readAgain(TextureResult& result, const std::vector<TextureSample>& samples,
             const std::size_t s = std::size_t(sites.sample[i]);
             Vec2f& at = sites.coordinate[i];
             at = {at.x * ratio[s].x, at.y * ratio[s].y};
-            if (smooth)
+            if (result.smooth)
                 readCubic(samples[s].image, at, &sites.values[i * channels]);
             else
                 std::copy_n(nearestTexel(samples[s].image, at), channels, &sites.values[i * channels]);
@@ -152,7 +151,8 @@ bool isTextureMap(const std::string& path) {
 
 std::vector<std::string> sampleComments(const TextureResult& result,
                                         const std::vector<TextureSample>& samples) {
-    std::vector<std::string> lines{kTexelKey + exactText(result.texel), kScaleKey + exactText(result.scale)};
+    std::vector<std::string> lines{kTexelKey + exactText(result.texel),
+                                   kReadingKey + (result.smooth ? "smooth" : "nearest")};
     for (const TextureSample& sample : samples)
         lines.push_back(kSampleKey + std::to_string(sample.image.width) + ' ' +
                         std::to_string(sample.image.height) +
@@ -202,9 +202,7 @@ void repeatTexture(TextureMap& map, std::vector<TextureSample>& samples, const R
                     "; coordinates are scaled by " + roundedText(double(ratio[s].x), 4) + " and " +
                     roundedText(double(ratio[s].y), 4));
     }
-    const double finer = double(std::sqrt(ratio[0].x * ratio[0].y));
-    map.result.texel /= finer;
-    map.result.scale /= finer;
+    map.result.texel /= double(std::sqrt(ratio[0].x * ratio[0].y));
     readAgain(map.result, samples, ratio, ctx);
 }
 

@@ -9,7 +9,8 @@
 namespace vdbsynth {
 namespace {
 
-constexpr float kSlope = 0.25f, kTexels = 0.25f;  // what coordinates of one chart may differ by
+// What coordinates of one chart may differ by: less shows as a stretch, more as a tear.
+constexpr float kSlope = 0.5f, kTexels = 1;
 
 // The copy of `at` in a tileable sample that is nearest to `wanted`.
 Vec2f nearestCopy(const SampleImage& image, const Vec2f& at, const Vec2f& wanted) {

@@ -33,7 +33,7 @@ struct CornerCoordinates {
 /// A triangle whose corners continue each other takes their sites' coordinates, for tileable samples in the
 /// same copy of the sample. A triangle across charts takes that of the corner which most others continue
 /// (the first on a tie), extended to the others (extendedCoordinate). Two corners continue each other where
-/// their coordinates differ from the extended one by at most a quarter of their distance and a quarter texel.
+/// their coordinates differ from the extended one by at most half their distance and a texel.
 /// @param triangles  of sites
 /// @par Cost    O(triangles)   @par Repeats same bits for any number of threads
 CornerCoordinates cornerCoordinates(const TexturedSurface& surface, const std::vector<Triangle>& triangles,

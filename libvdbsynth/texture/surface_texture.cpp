@@ -17,7 +17,6 @@ namespace vdbsynth {
 namespace {
 
 constexpr std::size_t kMerged = 20000;  // points from which on directions are found on fewer sites
-constexpr double kMagnified = 1.5;      // texels of so many spacings and more are read smoothly
 constexpr double kMergedCell = 2.5;     // [spacings]
 
 // Points that coincide and face the same way, as one.

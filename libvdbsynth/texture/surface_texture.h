@@ -26,6 +26,10 @@ enum class SeamBlend {
     Histogram   ///< always
 };
 
+/// Sites as sparse as the texels take a texel each; where a texel is over so many spacings wide, samples are
+/// read between texels (readCubic).
+inline constexpr double kMagnified = 1.5;
+
 struct SurfaceTextureOptions {
     double texel = 0;  ///< [world] side of a texel on the surface, above 0; 0: the mean distance of a point
                        ///< to its nearest, times `scale`

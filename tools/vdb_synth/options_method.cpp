@@ -165,7 +165,8 @@ std::vector<Option> analogyTable() {
                     [](Option& o) {
                         o.says(
                              "direction of the images' rows over the target: axis:x, axis:-z, around:y, "
-                             "radial, a grid of vectors or scalars FILE.vdb[:GRID], or strokes (world): .csv "
+                             "radial, curvature, a grid of vectors or scalars FILE.vdb[:GRID], or strokes "
+                             "(world): .csv "
                              "rows x,y,z,dx,dy,dz, .json, .ply points with normals")
                             .otherwiseIs("a smooth field");
                     }),

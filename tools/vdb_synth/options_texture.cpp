@@ -41,6 +41,14 @@ std::vector<Option> methodTable() {
             .says("side of the part of the image that --method hybrid matches in")
             .otherwiseIs("the whole image")
             .takenBy(kTexture),
+        real("uniformity", "U", 0, 10)
+            .says("preference for places of the image that are used less, of --method default")
+            .initially("0.25")
+            .takenBy(kTexture),
+        real("histogram", "H", 0, 10)
+            .says("preference for values that are rarer than in the image, of --method default")
+            .initially("0.75")
+            .takenBy(kTexture),
         flag("draft")
             .says("a quick look: no passes of correction but on the coarsest level")
             .takenBy(kTexture),

@@ -47,7 +47,7 @@ TextureResult byCoordinates(const TextureTarget& target, const std::vector<Sampl
     surface.synthesis = options.synthesis;
     surface.synthesis.levels = options.levels;
     SurfaceTextureResult made = textureSurface(target, images, surface, ctx);
-    return {std::move(made.sites), made.texel, std::move(made.levels)};
+    return {std::move(made.sites), made.texel, options.scale > kMagnified, std::move(made.levels)};
 }
 
 TextureResult byParameterization(const TextureTarget& target, const SampleImage& image,
@@ -61,7 +61,7 @@ TextureResult byParameterization(const TextureTarget& target, const SampleImage&
                 roundedText(100 * double(made.gaps) / double(target.point.size()), 3) +
                 " % of the points in gaps between them, mixed " +
                 (made.histogram ? "by histogram" : "by weight"));
-    return {std::move(made.sites), made.texel, {}};
+    return {std::move(made.sites), made.texel, true, {}};
 }
 
 TextureResult byMatching(const TextureTarget& target, const SampleImage& image, const TextureOptions& options,
@@ -72,7 +72,7 @@ TextureResult byMatching(const TextureTarget& target, const SampleImage& image, 
     if (options.levels > 0) own.levels = options.levels;
     own.coherent = options.coherent;
     PointMatchingResult made = matchPoints(target, image, own, ctx);
-    return {std::move(made.sites), made.texel, {}};
+    return {std::move(made.sites), made.texel, true, {}};
 }
 
 TextureResult byHybrid(const TextureTarget& target, const SampleImage& image, const TextureOptions& options,
@@ -90,7 +90,7 @@ TextureResult byHybrid(const TextureTarget& target, const SampleImage& image, co
                 roundedText(100 * double(made.gaps) / points, 3) + " % of the points in gaps, " +
                 roundedText(100 * double(made.widened) / points, 3) + " % when widened to features of " +
                 roundedText(made.featureSize, 3) + " texels");
-    return {std::move(made.sites), made.texel, {}};
+    return {std::move(made.sites), made.texel, true, {}};
 }
 
 // The one place where a method is chosen.
@@ -184,6 +184,7 @@ void displace(TextureShape& shape, const TextureResult& result, const std::vecto
     const SampleMap* found = nullptr;
     for (const SampleMap& of : samples.front().maps)
         if (of.name == map) found = &of;
+    requireOption(std::abs(amplitude) < 1e18, "amplitude", roundedText(amplitude, 6), "within 1e18 (world)");
     requireOption(found != nullptr, "displace", map, "the name of a map of the sample");
     const std::size_t channels = std::size_t(samples.front().image.channels),
                       first = std::size_t(found->first);

@@ -35,6 +35,7 @@ void validate(const TextureOptions& options);
 struct TextureResult {
     TexturedSites sites;
     double texel = 1;                          ///< [world]
+    bool smooth = true;                        ///< values were read between texels, else from the nearest
     std::vector<CoordinateLevelStats> levels;  ///< coarse to fine, of the default method
 };
 
@@ -56,7 +57,7 @@ std::vector<std::int32_t> labelsInside(const TextureShape& shape, const LevelSet
 
 /// Moves all elements along their sites' normals by `amplitude` times a map's value (its first channel), and
 /// fills TextureShape::moved. Coordinates stay.
-/// @param amplitude  [world]   @throw Error InvalidOption (no such map)
+/// @param amplitude  [world]   @throw Error InvalidOption (no such map, an amplitude too large)
 void displace(TextureShape& shape, const TextureResult& result, const std::vector<TextureSample>& samples,
               const std::string& map, double amplitude);
 

@@ -20,6 +20,7 @@ using Kind = DirectionSource::Kind;
 
 constexpr std::size_t kCurvatureNeighbours = 16;
 constexpr std::size_t kStrokeSites = 8;  // nearest sites that a stroke applies to
+constexpr std::size_t kCurvatureNeighbours = 8;
 
 GridReader directionReader(const openvdb::GridBase& grid) {
     if (GridReader vectors = vectorReader(grid, GridSampling::Linear)) return vectors;

@@ -17,11 +17,13 @@ namespace vdbsynth {
 namespace {
 
 // `vdbsynth:sample WIDTH HEIGHT tile|mirror NAME` for each sample, `vdbsynth:map NAME` for each further map,
-// and `vdbsynth:texel LENGTH`.
-const std::string kSampleKey = "vdbsynth:sample ", kMapKey = "vdbsynth:map ", kTexelKey = "vdbsynth:texel ";
+// `vdbsynth:texel LENGTH` and `vdbsynth:reading smooth|nearest`.
+const std::string kSampleKey = "vdbsynth:sample ", kMapKey = "vdbsynth:map ", kTexelKey = "vdbsynth:texel ",
+                  kReadingKey = "vdbsynth:reading ";
 
 const char* const kColumns[] = {"source_u", "source_v", "source_exemplar", "source_tangent"};
 const char* const kBlended = "source_blended";
+constexpr int kLargest = 1 << 24;  // [texels] side of a sample
 
 // The next word of a line, cut off it.
 std::string cutWord(std::string& line) {
@@ -36,11 +38,14 @@ void readComments(const std::string& path, TextureMap& map) {
         bool good = true;
         if (line.compare(0, kTexelKey.size(), kTexelKey) == 0) {
             good = parseReal(line.substr(kTexelKey.size()), map.result.texel) && map.result.texel > 0;
+        } else if (line.compare(0, kReadingKey.size(), kReadingKey) == 0) {
+            map.result.smooth = line.substr(kReadingKey.size()) != "nearest";
         } else if (line.compare(0, kSampleKey.size(), kSampleKey) == 0) {
             line.erase(0, kSampleKey.size());
             RememberedSample sample;
             good = parseWhole(cutWord(line), sample.width) && parseWhole(cutWord(line), sample.height) &&
-                   sample.width > 0 && sample.height > 0;
+                   sample.width > 0 && sample.height > 0 && sample.width <= kLargest &&
+                   sample.height <= kLargest;
             sample.tileable = cutWord(line) == "tile";
             sample.name = line;
             map.samples.push_back(sample);
@@ -86,6 +91,9 @@ void readCoordinates(const std::string& path, TextureMap& map) {
             throw Error(ErrorCode::BadData, path + ": a source_exemplar of " +
                                                 roundedText(double(number), 6) + "; it has " +
                                                 std::to_string(map.samples.size()) + " samples");
+        constexpr float kFarthest = 1e7f;  // [texels] so that they fit whole numbers
+        if (!(std::abs(u.values[e]) < kFarthest && std::abs(v.values[e]) < kFarthest))
+            throw Error(ErrorCode::BadData, path + ": a source_u or source_v beyond 10 million pixels");
         sites.sample[site] = std::int32_t(number);
         sites.coordinate[site] = {u.values[e], v.values[e]};
         sites.tangent[site] = tangentOf(map.shape.normal[site], &tangent.values[3 * e]);
@@ -111,6 +119,26 @@ void noteLostMaps(const TextureMap& map, const TextureSample& sample, const RunC
                     map.shape.name + ": its map " + name + " is left out; `channel` gives it again");
 }
 
+// Coordinates times the ratio of each sample's size, and the values there, read as texture reads them.
+void readAgain(TextureResult& result, const std::vector<TextureSample>& samples,
+               const std::vector<Vec2f>& ratio, const RunContext& ctx) {
+    TexturedSites& sites = result.sites;
+    const std::size_t channels = std::size_t(samples[0].image.channels), count = sites.sample.size();
+    sites.values.assign(count * channels, 0);
+    parallelFor(ctx, count, 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (sites.sample[i] < 0) continue;
+            const std::size_t s = std::size_t(sites.sample[i]);
+            Vec2f& at = sites.coordinate[i];
+            at = {at.x * ratio[s].x, at.y * ratio[s].y};
+            if (result.smooth)
+                readCubic(samples[s].image, at, &sites.values[i * channels]);
+            else
+                std::copy_n(nearestTexel(samples[s].image, at), channels, &sites.values[i * channels]);
+        }
+    });
+}
+
 }  // namespace
 
 bool isTextureMap(const std::string& path) {
@@ -123,7 +151,8 @@ bool isTextureMap(const std::string& path) {
 
 std::vector<std::string> sampleComments(const TextureResult& result,
                                         const std::vector<TextureSample>& samples) {
-    std::vector<std::string> lines{kTexelKey + exactText(result.texel)};
+    std::vector<std::string> lines{kTexelKey + exactText(result.texel),
+                                   kReadingKey + (result.smooth ? "smooth" : "nearest")};
     for (const TextureSample& sample : samples)
         lines.push_back(kSampleKey + std::to_string(sample.image.width) + ' ' +
                         std::to_string(sample.image.height) +
@@ -174,17 +203,7 @@ void repeatTexture(TextureMap& map, std::vector<TextureSample>& samples, const R
                     roundedText(double(ratio[s].y), 4));
     }
     map.result.texel /= double(std::sqrt(ratio[0].x * ratio[0].y));
-    const std::size_t channels = std::size_t(samples[0].image.channels), count = map.shape.site.size();
-    TexturedSites& sites = map.result.sites;
-    sites.values.assign(count * channels, 0);
-    parallelFor(ctx, count, 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            if (sites.sample[i] < 0) continue;
-            const std::size_t s = std::size_t(sites.sample[i]);
-            sites.coordinate[i] = {sites.coordinate[i].x * ratio[s].x, sites.coordinate[i].y * ratio[s].y};
-            readCubic(samples[s].image, sites.coordinate[i], &sites.values[i * channels]);
-        }
-    });
+    readAgain(map.result, samples, ratio, ctx);
 }
 
 }  // namespace vdbsynth

@@ -50,33 +50,39 @@ void uniteElements(TextureShape& shape) {
     }
 }
 
-// Sums in doubles, in the order of the elements or faces.
-std::vector<Vec3d> summedNormals(const TextureShape& shape, const std::vector<Vec3f>& normals) {
-    std::vector<Vec3d> sums(shape.site.size());
+// What the normals at a site sum up to, in doubles and in the order of the elements or faces.
+struct NormalSum {
+    Vec3d sum, first;
+    double whole = 0;  // the sum of lengths
+
+    void add(const Vec3d& normal) {
+        const double size = length(normal);
+        if (!std::isfinite(size) || !(size > 1e-30)) return;
+        if (whole == 0) first = normal;
+        sum = sum + normal;
+        whole += size;
+    }
+    // The mean; where normals cancel, as on a sheet with two sides, the first; 0 where there is none.
+    Vec3f direction() const {
+        constexpr double kCancelled = 1e-3;
+        if (whole == 0) return {0, 0, 0};
+        const Vec3d& taken = length(sum) > kCancelled * whole ? sum : first;
+        return std::abs(length(taken) - 1) < 1e-6 ? cast<float>(taken) : cast<float>(normalized(taken));
+    }
+};
+
+void normalsFrom(TextureShape& shape, const std::vector<Vec3f>& normals) {
+    std::vector<NormalSum> sums(shape.site.size());
     for (std::size_t i = 0; i < normals.size(); ++i)
-        if (usable(normals[i]))
-            sums[shape.siteOf[i]] = sums[shape.siteOf[i]] + cast<double>(unit(normals[i]));
-    if (!normals.empty()) return sums;
+        if (usable(normals[i])) sums[shape.siteOf[i]].add(cast<double>(unit(normals[i])));
     for (const Triangle& t : shape.triangles) {
+        if (!normals.empty()) break;
         const Vec3d a = cast<double>(shape.points[t[0]]), b = cast<double>(shape.points[t[1]]),
                     c = cast<double>(shape.points[t[2]]);
-        const Vec3d area = cross(b - a, c - a);
-        for (std::uint32_t v : t) sums[shape.siteOf[v]] = sums[shape.siteOf[v]] + area;
+        for (std::uint32_t v : t) sums[shape.siteOf[v]].add(cross(b - a, c - a));
     }
-    return sums;
-}
-
-// A place whose normals cancel, as of a sheet with two sides, takes the first usable one.
-void normalsFrom(TextureShape& shape, const std::vector<Vec3f>& normals) {
-    const std::vector<Vec3d> sums = summedNormals(shape, normals);
-    shape.normal.assign(sums.size(), Vec3f{0, 0, 0});
-    for (std::size_t i = 0; i < sums.size(); ++i)
-        if (length(sums[i]) > 1e-30)
-            shape.normal[i] = std::abs(length(sums[i]) - 1) < 1e-6 ? cast<float>(sums[i])
-                                                                   : cast<float>(normalized(sums[i]));
-    for (std::size_t i = 0; i < normals.size(); ++i)
-        if (!usable(shape.normal[shape.siteOf[i]]) && usable(normals[i]))
-            shape.normal[shape.siteOf[i]] = unit(normals[i]);
+    shape.normal.clear();
+    for (const NormalSum& sum : sums) shape.normal.push_back(sum.direction());
 }
 
 void estimatedNormals(TextureShape& shape, const RunContext& ctx) {

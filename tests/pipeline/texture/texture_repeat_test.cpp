@@ -46,6 +46,7 @@ TEST_CASE("repeatTexture: the run's own sample gives the same file", "[pipeline]
 TEST_CASE("repeatTexture: a sample of another size is read at scaled coordinates", "[pipeline]") {
     const test::TemporaryFolder folder;
     TextureMap map = readTextureMap(squareMap(folder, test::rampSample(16, 16, 1)));
+    CHECK(map.result.smooth);
     std::vector<TextureSample> samples{test::rampSample(32, 32)};
     test::Said said;
     repeatTexture(map, samples, said.ctx);
@@ -82,7 +83,8 @@ TEST_CASE("readTextureMap: what texture did not write is an error", "[pipeline][
 TEST_CASE("sampleComments: a line for each sample, map and the texel", "[pipeline][fast]") {
     TextureResult result;
     result.texel = 0.5;
+    result.smooth = false;
     CHECK(sampleComments(result, {test::rampSample(4, 6, 1)}) ==
-          std::vector<std::string>{"vdbsynth:texel 0.5", "vdbsynth:sample 4 6 mirror ramp.png",
-                                   "vdbsynth:map map0"});
+          std::vector<std::string>{"vdbsynth:texel 0.5", "vdbsynth:reading nearest",
+                                   "vdbsynth:sample 4 6 mirror ramp.png", "vdbsynth:map map0"});
 }

@@ -24,6 +24,8 @@ const std::vector<OfMethods> kOfMethods{{"passes", {"default"}},
                                         {"coherence", {"default"}},
                                         {"uniformity", {"default"}},
                                         {"histogram", {"default"}},
+                                        {"turn", {"default"}},
+                                        {"blend", {"default", "parameterize"}},
                                         {"draft", {"default"}},
                                         {"neighbours", {"parameterize", "match", "hybrid"}},
                                         {"levels", {"default", "match", "hybrid"}},
@@ -64,6 +66,17 @@ TextureOptions parseOptions(const Arguments& arguments) {
     options.synthesis.coherence = arguments.real("coherence");
     options.synthesis.uniformity = arguments.real("uniformity");
     options.synthesis.histogram = arguments.real("histogram");
+    options.synthesis.turn = arguments.real("turn");
+    if (arguments.has("turn") && arguments.has("direction"))
+        throw Error(ErrorCode::InvalidOption,
+                    "--turn: has no effect with --direction, which pieces follow within 8 degrees");
+    const std::string blend = arguments.text("blend");
+    options.blend = blend == "off"         ? TextureBlend::Off
+                    : blend == "auto"      ? TextureBlend::Automatic
+                    : blend == "weight"    ? TextureBlend::Weight
+                    : blend == "histogram" ? TextureBlend::Histogram
+                                           : TextureBlend::Usual;
+    validate(options);
     return options;
 }
 

@@ -49,6 +49,19 @@ std::vector<Option> methodTable() {
             .says("preference for values that are rarer than in the image, of --method default")
             .initially("0.75")
             .takenBy(kTexture),
+        real("turn", "DEGREES", 0, 180)
+            .says("how far pieces of the image may turn from the smooth field, of --method default without "
+                  "--direction")
+            .initially("60")
+            .takenBy(kTexture),
+        choice("blend", "HOW",
+               {{"off", ""},
+                {"auto", "histogram for images without structure"},
+                {"weight", "as published"},
+                {"histogram", "keeps contrast"}})
+            .says("mixing of colours where pieces of the image meet, of --method default and parameterize")
+            .otherwiseIs("off, with parameterize auto")
+            .takenBy(kTexture),
         flag("draft")
             .says("a quick look: no passes of correction but on the coarsest level")
             .takenBy(kTexture),

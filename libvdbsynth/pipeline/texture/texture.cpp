@@ -46,6 +46,8 @@ TextureResult byCoordinates(const TextureTarget& target, const std::vector<Sampl
     surface.scale = options.scale;
     surface.synthesis = options.synthesis;
     surface.synthesis.levels = options.levels;
+    if (options.blend == TextureBlend::Automatic) surface.blend = SeamBlend::Automatic;
+    if (options.blend == TextureBlend::Histogram) surface.blend = SeamBlend::Histogram;
     SurfaceTextureResult made = textureSurface(target, images, surface, ctx);
     return {std::move(made.sites), made.texel, options.scale > kMagnified, std::move(made.levels)};
 }
@@ -55,6 +57,8 @@ TextureResult byParameterization(const TextureTarget& target, const SampleImage&
     PointParameterizationOptions own;
     own.neighbours = options.neighbours;
     own.scale = options.scale;
+    if (options.blend == TextureBlend::Weight) own.blend = PointBlend::Alpha;
+    if (options.blend == TextureBlend::Histogram) own.blend = PointBlend::Histogram;
     PointParameterizationResult made = parameterizePoints(target, image, own, ctx);
     message(ctx, MessageLevel::Note,
             std::to_string(made.patches) + (made.patches == 1 ? " patch" : " patches") + ", " +
@@ -123,6 +127,15 @@ void validate(const TextureOptions& options) {
                   "a whole number from 1 to 12");
     requireOption(options.matchSample == 0 || options.matchSample >= kSmallestSample, "matchSample",
                   std::to_string(options.matchSample), "at least 4 (texels)");
+    const TextureMethod method = options.method;
+    const TextureBlend blend = options.blend;
+    const bool mixes = method == TextureMethod::Default || method == TextureMethod::Parameterize;
+    requireOption(blend == TextureBlend::Usual || mixes, "blend", "given",
+                  "left out: method " + std::string(nameOf(method)) + " mixes nothing");
+    requireOption(blend != TextureBlend::Off || method == TextureMethod::Default, "blend", "off",
+                  "auto, weight or histogram: gaps between patches are mixed");
+    requireOption(blend != TextureBlend::Weight || method == TextureMethod::Parameterize, "blend", "weight",
+                  "off, auto or histogram");
     if (!options.direction) return;
     using Kind = DirectionSource::Kind;
     const DirectionSource& direction = *options.direction;

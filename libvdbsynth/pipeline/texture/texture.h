@@ -16,15 +16,25 @@ namespace vdbsynth {
 /// How to texture: by surface coordinate synthesis, or as one of the paper's three methods [zhang2004].
 enum class TextureMethod { Default, Parameterize, Match, Hybrid };
 
+/// Whether and how colours are mixed where pieces of the sample meet.
+enum class TextureBlend {
+    Usual,      ///< of the default method Off, of `parameterize` Automatic; the others mix nothing
+    Automatic,  ///< Histogram if the sample is stochastic (texture/histogram_blend.h)
+    Off,        ///< of the default method only
+    Weight,     ///< mean by weight, of `parameterize` only; loses contrast
+    Histogram   ///< keeps the sample's histogram
+};
+
 struct TextureOptions {
     TextureMethod method = TextureMethod::Default;
     double scale = 1;  ///< 0.01..100: 2 makes the texture twice as large. At 1 a texel is the mean distance
                        ///< of a site to its nearest.
     std::optional<DirectionSource> direction;  ///< of the sample's u axis over the target; none: free
     CoordinateOptions synthesis;               ///< of the default method
-    int neighbours = 25;                       ///< 4..128, of the paper's methods
-    int levels = 0;                            ///< 1..12, of the sample's pyramid; 0: as many as fit
-    bool coherent = false;                     ///< of `match`: only candidates that continue neighbours
+    TextureBlend blend = TextureBlend::Usual;
+    int neighbours = 25;    ///< 4..128, of the paper's methods
+    int levels = 0;         ///< 1..12, of the sample's pyramid; 0: as many as fit
+    bool coherent = false;  ///< of `match`: only candidates that continue neighbours
     int matchSample = 0;  ///< [texels] side of the part of the sample that `hybrid` matches in; 0: all of it
 };
 

@@ -18,7 +18,6 @@ namespace {
 
 using Kind = DirectionSource::Kind;
 
-constexpr std::size_t kCurvatureNeighbours = 16;
 constexpr std::size_t kStrokeSites = 8;  // nearest sites that a stroke applies to
 constexpr std::size_t kCurvatureNeighbours = 8;
 

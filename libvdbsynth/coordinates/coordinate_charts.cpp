@@ -5,6 +5,8 @@
 namespace vdbsynth {
 namespace {
 
+constexpr float kChartDiffers = 0.4f;  // [steps] most that a chart's sites may differ from their mean
+
 // Charts under construction.
 class Charts {
 public:
@@ -73,7 +75,7 @@ private:
             tangentNear(normal, carried(mLevel.tangent[from], mLevel.sites.normal[from], normal));
         const Neighbourhood near(mLevel, to, mInChart.data());
         if (near.empty()) return dot(placed.tangent, mLevel.field[to]) >= mLevel.leastCosine - 1e-5f;
-        return near.meanNear(placed, placed) == near.count();
+        return near.meanNear(placed, placed, kChartDiffers) == near.count();
     }
 
     CoordinateLevel& mLevel;

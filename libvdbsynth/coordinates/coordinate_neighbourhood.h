@@ -10,7 +10,7 @@
 namespace vdbsynth {
 
 inline constexpr std::size_t kMostNeighbours = 16;  ///< that a site looks at
-inline constexpr float kSame = 0.4f;                ///< [steps] within which continuations are one
+inline constexpr float kSame = 0.6f;                ///< [steps] within which continuations are one
 inline constexpr float kSameTurn = 0.95f;           ///< cosine of the angle within which they are
 inline constexpr float kJump = 0.03f;  ///< of the features' variance, what a jump costs however well it fits
 
@@ -92,10 +92,10 @@ public:
         return meanNear(choice.placed, settled) > 0 ? settled : choice.placed;
     }
 
-    /// The mean of the continuations within kSame steps of a place and kSameTurn of its tangent.
+    /// The mean of the continuations within some steps of a place and kSameTurn of its tangent.
     /// @return their number
-    std::size_t meanNear(const Placed& placed, Placed& mean) const {
-        const float reach = kSame * float(mSample.step);
+    std::size_t meanNear(const Placed& placed, Placed& mean, float steps = kSame) const {
+        const float reach = steps * float(mSample.step);
         Vec2f offset;
         Vec3f tangent;
         std::size_t count = 0;

@@ -12,7 +12,7 @@ struct CoordinateOptions {
     int passes = 2;        ///< of correction on every level, 0..20
     int coarsePasses = 4;  ///< on the coarsest level, which begins with charts, 0..100
     int similar = 2;       ///< texels like a candidate that are tried beside it (k of k-coherence), 0..8
-    double coherence = 1;  ///< 0..10: how much more a jump must improve than a continuation, as a share of
+    double coherence = 2;  ///< 0..10: how much more a jump must improve than a continuation, as a share of
                            ///< its cost
     double uniformity = 0.25;  ///< 0..10: how much a place of the sample costs that is used twice as often as
                                ///< others, as a share of the features' variance

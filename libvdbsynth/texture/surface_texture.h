@@ -37,7 +37,7 @@ struct SurfaceTextureOptions {
     /// Its `turn` is for targets without directions; where any are given, charts turn at most kGivenTurn from
     /// them.
     CoordinateOptions synthesis;
-    SeamBlend blend = SeamBlend::Off;  ///< seam_blend.h; charts meet well without (docs/texturing.md)
+    SeamBlend blend = SeamBlend::Automatic;  ///< seam_blend.h
 };
 
 inline constexpr double kGivenTurn = 8;  ///< [degrees]

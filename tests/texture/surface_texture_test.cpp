@@ -7,6 +7,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -23,7 +24,10 @@ TextureTarget targetOf(const test::PointShape& shape) {
 TEST_CASE("textureSurface: values are the sample's texels at the coordinates") {
     const SampleImage noise = test::noiseSample(40, 40);
     const TextureTarget target = targetOf(test::spiralSphere(5000, 10));
-    const SurfaceTextureResult result = textureSurface(target, {noise});
+    SurfaceTextureOptions options;
+    options.blend = SeamBlend::Off;
+    const SurfaceTextureResult result = textureSurface(target, {noise}, options);
+    CHECK(result.blended == 0);
     REQUIRE(result.sites.values.size() == 5000);
     for (std::size_t i = 0; i < 5000; ++i) {
         REQUIRE(result.sites.values[i] == nearestTexel(noise, result.sites.coordinate[i])[0]);
@@ -33,6 +37,23 @@ TEST_CASE("textureSurface: values are the sample's texels at the coordinates") {
     // A texel is the mean distance to the nearest point.
     const SurfaceSites sites = sitesOfPoints(target.point, target.normal, 1);
     CHECK(result.texel == Approx(meanNearestDistance(sites)));
+}
+
+TEST_CASE(
+    "textureSurface: colours are mixed where charts meet, of stochastic samples unless told otherwise") {
+    const SampleImage noise = test::noiseSample(64, 64), stripes = test::stripesSample(64, 8);
+    const TextureTarget target = targetOf(test::spiralSphere(6000, 10));
+    const SurfaceTextureResult mixed = textureSurface(target, {noise});
+    CHECK(mixed.blended > 0);
+    CHECK(std::size_t(std::count(mixed.sites.blended.begin(), mixed.sites.blended.end(), char(1))) ==
+          mixed.blended);
+    for (std::size_t i = 0; i < 6000; ++i)
+        if (!mixed.sites.blended[i])
+            REQUIRE(mixed.sites.values[i] == nearestTexel(noise, mixed.sites.coordinate[i])[0]);
+    CHECK(textureSurface(target, {stripes}).blended == 0);
+    SurfaceTextureOptions always;
+    always.blend = SeamBlend::Histogram;
+    CHECK(textureSurface(target, {stripes}, always).blended > 0);
 }
 
 TEST_CASE("textureSurface: given directions are the tangents") {

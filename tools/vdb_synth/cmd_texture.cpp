@@ -71,11 +71,10 @@ TextureOptions parseOptions(const Arguments& arguments) {
         throw Error(ErrorCode::InvalidOption,
                     "--turn: has no effect with --direction, which pieces follow within 8 degrees");
     const std::string blend = arguments.text("blend");
-    options.blend = blend == "off"         ? TextureBlend::Off
-                    : blend == "auto"      ? TextureBlend::Automatic
+    options.blend = blend == "off" || (arguments.has("draft") && !arguments.has("blend")) ? TextureBlend::Off
                     : blend == "weight"    ? TextureBlend::Weight
                     : blend == "histogram" ? TextureBlend::Histogram
-                                           : TextureBlend::Usual;
+                                           : TextureBlend::Automatic;
     validate(options);
     return options;
 }

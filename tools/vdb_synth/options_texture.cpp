@@ -27,7 +27,7 @@ std::vector<Option> methodTable() {
             .takenBy(kTexture),
         real("coherence", "K", 0, 10)
             .says("preference for continuing a neighbour over the nearest match, of --method default")
-            .initially("4")
+            .initially("2")
             .takenBy(kTexture),
         whole("neighbours", "K", 4, 128)
             .says("neighbours of a point, of --method parameterize, match and hybrid")
@@ -60,10 +60,10 @@ std::vector<Option> methodTable() {
                 {"weight", "as published"},
                 {"histogram", "keeps contrast"}})
             .says("mixing of colours where pieces of the image meet, of --method default and parameterize")
-            .otherwiseIs("off, with parameterize auto")
+            .initially("auto")
             .takenBy(kTexture),
         flag("draft")
-            .says("a quick look: no passes of correction but on the coarsest level")
+            .says("a quick look: no passes of correction but on the coarsest level, nothing mixed")
             .takenBy(kTexture),
     };
 }

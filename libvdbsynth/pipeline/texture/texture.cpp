@@ -46,7 +46,7 @@ TextureResult byCoordinates(const TextureTarget& target, const std::vector<Sampl
     surface.scale = options.scale;
     surface.synthesis = options.synthesis;
     surface.synthesis.levels = options.levels;
-    if (options.blend == TextureBlend::Automatic) surface.blend = SeamBlend::Automatic;
+    if (options.blend == TextureBlend::Off) surface.blend = SeamBlend::Off;
     if (options.blend == TextureBlend::Histogram) surface.blend = SeamBlend::Histogram;
     SurfaceTextureResult made = textureSurface(target, images, surface, ctx);
     return {std::move(made.sites), made.texel, options.scale > kMagnified, std::move(made.levels)};
@@ -130,7 +130,7 @@ void validate(const TextureOptions& options) {
     const TextureMethod method = options.method;
     const TextureBlend blend = options.blend;
     const bool mixes = method == TextureMethod::Default || method == TextureMethod::Parameterize;
-    requireOption(blend == TextureBlend::Usual || mixes, "blend", "given",
+    requireOption(blend == TextureBlend::Automatic || mixes, "blend", "given",
                   "left out: method " + std::string(nameOf(method)) + " mixes nothing");
     requireOption(blend != TextureBlend::Off || method == TextureMethod::Default, "blend", "off",
                   "auto, weight or histogram: gaps between patches are mixed");

@@ -18,8 +18,8 @@ enum class TextureMethod { Default, Parameterize, Match, Hybrid };
 
 /// Whether and how colours are mixed where pieces of the sample meet.
 enum class TextureBlend {
-    Usual,      ///< of the default method Off, of `parameterize` Automatic; the others mix nothing
-    Automatic,  ///< Histogram if the sample is stochastic (texture/histogram_blend.h)
+    Automatic,  ///< Histogram if the sample is stochastic (texture/histogram_blend.h), else Off, with
+                ///< `parameterize` Weight; `match` and `hybrid` mix nothing
     Off,        ///< of the default method only
     Weight,     ///< mean by weight, of `parameterize` only; loses contrast
     Histogram   ///< keeps the sample's histogram
@@ -31,7 +31,7 @@ struct TextureOptions {
                        ///< of a site to its nearest.
     std::optional<DirectionSource> direction;  ///< of the sample's u axis over the target; none: free
     CoordinateOptions synthesis;               ///< of the default method
-    TextureBlend blend = TextureBlend::Usual;
+    TextureBlend blend = TextureBlend::Automatic;
     int neighbours = 25;    ///< 4..128, of the paper's methods
     int levels = 0;         ///< 1..12, of the sample's pyramid; 0: as many as fit
     bool coherent = false;  ///< of `match`: only candidates that continue neighbours

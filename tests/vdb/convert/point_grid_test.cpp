@@ -62,7 +62,7 @@ TEST_CASE("pointGrid: a file of it holds every point with its attributes", "[vdb
     for (const auto& [n, at] : places) CHECK(length(at - from.points[std::size_t(n)]) < 1e-5f);
 }
 
-TEST_CASE("pointGrid: bad voxels, no points and far points are errors; coinciding ones are kept",
+TEST_CASE("pointGrid: bad voxels, no points and far points are errors, coinciding ones are kept",
           "[vdb][error]") {
     CHECK(test::thrownBy([] { pointGrid(cloud(), 0); }).code == int(ErrorCode::InvalidOption));
     CHECK(test::thrownBy([] { pointGrid({}, 1); }).code == int(ErrorCode::EmptyInput));

@@ -1,12 +1,14 @@
 #!/usr/bin/python3
 """Measures textures on points: how good they are and how fast they are made. Prints the tables of docs/texturing.md.
-Usage: textures.py BUILD_FOLDER [TABLE...]
+Usage: textures.py BUILD_FOLDER [--texture "OPTIONS"] [TABLE...]
 Tables: quality (the default method on every sample), methods (beside the paper's three), blend (colours mixed at seams),
 speed (beside the paper's table 1), growth (with the number of points); default all. `check` is a short run with a sample of
-its own, which fails if a number is not finite. Samples are those of VDBSYNTH_SAMPLES, default ../shared/data."""
+its own, which fails if a number is not finite. OPTIONS are of texture_quality, of the default method, in all tables. Samples are those of VDBSYNTH_SAMPLES, default ../shared/data."""
+import argparse
 import math
 import os
 import pathlib
+import shlex
 import statistics
 import subprocess
 import sys
@@ -53,12 +55,13 @@ def rounded(speed):
 
 
 class Program:
-    def __init__(self, build):
+    def __init__(self, build, options):
         self.program = str(pathlib.Path(build) / "tests" / "texture_quality")
+        self.options = options
 
     def lines(self, target, samples, *options):
         """(sample, numbers) of each sample."""
-        result = subprocess.run([self.program, target, *map(str, samples), *map(str, options)], capture_output=True, text=True, check=False)
+        result = subprocess.run([self.program, target, *map(str, samples), *self.options, *map(str, options)], capture_output=True, text=True, check=False)
         if result.returncode != 0:
             raise RuntimeError(result.stderr.strip())
         return [(line.split()[0], [float(v) for v in line.split()[1:]]) for line in result.stdout.splitlines()[1:]]
@@ -134,16 +137,22 @@ TABLES = {"quality": quality, "methods": methods, "blend": blend, "speed": speed
 
 
 def main():
-    if len(sys.argv) < 2 or not set(sys.argv[2:]) <= {*TABLES, "check"}:
-        sys.exit(__doc__)
-    program = Program(sys.argv[1])
-    if "check" in sys.argv[2:]:
-        folder = pathlib.Path(sys.argv[1]) / "quality"
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build")
+    parser.add_argument("--texture", default="")
+    parser.add_argument("tables", nargs="*", metavar="table", help=", ".join([*TABLES, "check"]))
+    a = parser.parse_intermixed_args()
+    unknown = set(a.tables) - {*TABLES, "check"}
+    if unknown:
+        parser.error(f"no such table: {', '.join(sorted(unknown))}")
+    program = Program(a.build, shlex.split(a.texture))
+    if "check" in a.tables:
+        folder = pathlib.Path(a.build) / "quality"
         folder.mkdir(exist_ok=True)
-        return check(program, folder)
-    for table in sys.argv[2:] or TABLES:
+        check(program, folder)
+        return
+    for table in a.tables or TABLES:
         TABLES[table](program)
-    return None
 
 
 if __name__ == "__main__":

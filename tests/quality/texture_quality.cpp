@@ -20,6 +20,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <functional>
 #include <map>
 #include <string>
@@ -124,6 +125,11 @@ double secondsNow() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+// Of all threads, which other work on the machine does not change much.
+double processorNow() {
+    return double(std::clock()) / CLOCKS_PER_SEC;
+}
+
 // False where a word is unknown.
 bool readArguments(int argc, char** argv, Arguments& arguments) {
     CoordinateOptions& synthesis = arguments.options.synthesis;
@@ -164,16 +170,17 @@ bool readArguments(int argc, char** argv, Arguments& arguments) {
 void measure(const std::string& path, const Arguments& arguments, const TextureTarget& target,
              const RunContext& ctx) {
     const SampleImage sample = cropped(test::sampleOf(readRaster(path)), arguments.crop);
-    const double begun = secondsNow();
+    const double begun = secondsNow(), processorBegun = processorNow();
     const Made result = make(arguments, target, sample, ctx);
-    const double seconds = secondsNow() - begun;
+    const double seconds = secondsNow() - begun, processor = processorNow() - processorBegun;
     std::printf("%-28s", path.substr(path.rfind('/') + 1).c_str());
     if (!arguments.speed) {
         const test::TextureNumbers n = test::textureNumbers(target, result.sites, sample, result.texel, ctx);
         std::printf(" %8.3f %8.3f %8.3f %8.3f %8.3f %8.3f", n.histogram, n.steps, n.seams, n.patches, n.wide,
                     n.coherent);
     }
-    std::printf(" %9.0f\n", double(target.point.size()) / seconds);
+    const double points = double(target.point.size());
+    std::printf(" %9.0f %9.0f\n", points / seconds, points / processor);
     std::fflush(stdout);
 }
 
@@ -197,7 +204,7 @@ int main(int argc, char** argv) {
         std::printf("%-28s", "sample");
         if (!arguments.speed)
             std::printf(" %8s %8s %8s %8s %8s %8s", "W1", "steps", "seams", "patches", "wide", "coherent");
-        std::printf(" %9s\n", "points/s");
+        std::printf(" %9s %9s\n", "points/s", "by a core");
         for (const std::string& path : arguments.samples) measure(path, arguments, target, ctx);
     } catch (const Error& error) {
         std::fprintf(stderr, "%s\n", error.what());

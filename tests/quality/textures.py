@@ -19,7 +19,7 @@ VISTEX = ["Bark-11", "Brick-04", "Fabric-11", "Fabric-13", "Flowers-00", "Food-0
 TEXTURES = [SAMPLES / "textures" / name for name in [f"vistex-{v}.png" for v in VISTEX] + ["gravel.png", "brick.png", "metal.pgm"]]
 FEW = [t for t in TEXTURES if t.stem in ("vistex-Flowers-00", "vistex-Fabric-11", "gravel", "brick")]
 BUNNY = str(SAMPLES / "meshes" / "bunny.off")
-COLUMNS = ["W1", "steps", "seams", "patches", "wide", "coherent", "points/s"]
+COLUMNS = ["W1", "steps", "seams", "patches", "wide", "coherent", "points/s", "by a core"]
 # Table 1 of the paper: model here, points, side of the sample, k, levels, coherent, points a second there.
 PAPER = [
     ("parameterize", "sphere:16386", 64, 25, 1, False, 54620), ("parameterize", BUNNY, 128, 36, 1, False, 26285),
@@ -67,11 +67,12 @@ class Program:
         return [(line.split()[0], [float(v) for v in line.split()[1:]]) for line in result.stdout.splitlines()[1:]]
 
     def speed(self, target, sample, *options):
-        return self.lines(target, [sample], "--speed", *options)[0][1][0]
+        """Points a second: all cores, and a second of one core's time."""
+        return self.lines(target, [sample], "--speed", *options)[0][1]
 
 
 def written(numbers):
-    return [f"{v:.2f}" for v in numbers[:-1]] + [rounded(numbers[-1])]
+    return [f"{v:.2f}" for v in numbers[:-2]] + [rounded(v) for v in numbers[-2:]]
 
 
 def quality(program):
@@ -101,15 +102,15 @@ def blend(program):
 
 def speed(program):
     sample = SAMPLES / "textures" / "vistex-Flowers-00.png"
-    header("method", "points", "sample", "k", "levels", "points/s", "the paper", "default method, points/s")
+    header("method", "points", "sample", "k", "levels", "points/s", "by a core", "the paper", "default: points/s", "by a core")
     default = {}
     for method, target, side, k, levels, coherent, paper in PAPER:
         words = ["--crop", side, "--neighbours", k, "--levels", levels] + ["--coherent"] * coherent
         ours = program.speed(target, sample, "--method", method, *words)
         if (target, side) not in default:
             default[target, side] = program.speed(target, sample, "--crop", side)
-        row(method + ", coherent" * coherent, rounded_count(target), f"{side}x{side}", k, levels, rounded(ours), rounded(paper),
-            rounded(default[target, side]))
+        row(method + ", coherent" * coherent, rounded_count(target), f"{side}x{side}", k, levels, *map(rounded, ours), rounded(paper),
+            *map(rounded, default[target, side]))
 
 
 def rounded_count(target):
@@ -118,9 +119,10 @@ def rounded_count(target):
 
 def growth(program):
     sample = SAMPLES / "textures" / "vistex-Flowers-00.png"
-    header("points", "default, points/s", "parameterize, points/s")
+    header("points", "default: points/s", "by a core", "parameterize: points/s", "by a core")
     for count in (10_000, 100_000, 1_000_000):
-        row(count, *(rounded(program.speed(f"sphere:{count}", sample, "--method", m)) for m in ("default", "parameterize")))
+        speeds = [program.speed(f"sphere:{count}", sample, "--method", m) for m in ("default", "parameterize")]
+        row(count, *(rounded(v) for pair in speeds for v in pair))
 
 
 def check(program, folder):

@@ -86,6 +86,8 @@ Made make(const Arguments& arguments, const TextureTarget& target, const SampleI
     if (method == "parameterize") {
         PointParameterizationOptions own;
         own.neighbours = arguments.neighbours;
+        if (arguments.speed)
+            own.blend = PointBlend::Alpha;  // as published; Automatic measures the sample first
         PointParameterizationResult made = parameterizePoints(target, sample, own, ctx);
         return {std::move(made.sites), made.texel};
     }

@@ -97,7 +97,7 @@ def methods(program):
 
 
 def blend(program):
-    compared(program, [("off", ["--blend", 0]), ("histogram", ["--blend", 1])], TEXTURES)
+    compared(program, [("off", ["--blend", 0]), ("histogram", ["--blend", 1])], FEW)
 
 
 def speed(program):

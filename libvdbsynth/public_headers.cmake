@@ -4,6 +4,8 @@ set(VDBSYNTH_PUBLIC_HEADERS
   analogy/analogy_options.h
   base/error.h
   base/run_context.h
+  coordinates/coordinate_synthesis.h
+  coordinates/sample_image.h
   geometry/attribute.h
   geometry/mesh.h
   geometry/point_cloud.h
@@ -18,6 +20,7 @@ set(VDBSYNTH_PUBLIC_HEADERS
   math/affine.h
   math/index_box.h
   math/lattice.h
+  math/vec2.h
   math/vec3.h
   measure/measures.h
   pipeline/analogy/analogy.h
@@ -28,10 +31,17 @@ set(VDBSYNTH_PUBLIC_HEADERS
   pipeline/convert/model.h
   pipeline/repeat/repeat.h
   pipeline/synth/synth.h
+  pipeline/texture/texture.h
+  pipeline/texture/texture_sample.h
+  pipeline/texture/texture_target.h
+  points/surface_sites.h
   procedural/exemplar.h
   search/block_index.h
   synth/synthesis_options.h
   synth/target_size.h
+  texture/corner_coordinates.h
+  texture/surface_texture.h
+  texture/textured_sites.h
   vdb/level_set.h
   vdb/convert/attribute_grids.h
   vdb/convert/level_set_to_mesh.h

@@ -1,9 +1,11 @@
-// How good textures over points are, in numbers: one line a texture and method, as docs/texturing.md shows
-// them.
-//   texture_quality TARGET SAMPLE... [--method NAME] [--seed N]
-// TARGET: plane:SIDE, sphere:POINTS, or a file of points or a mesh, whose vertices count.
+// How good textures over points are and how fast they are made, in numbers: a line a sample.
+//   texture_quality TARGET SAMPLE... [--method NAME] [--seed N] [--speed] [--crop N] ...
+// TARGET: plane:SIDE, random:SIDE, sphere:POINTS, or a file of points or a mesh, whose vertices count.
+// --speed measures time only, --crop takes the sample's lower left N x N texels. tests/quality/textures.py
+// runs it for the tables of docs/texturing.md.
 #include "tests/quality/texture_measures.h"
 
+#include "libvdbsynth/base/error.h"
 #include "libvdbsynth/geometry/point_cloud.h"
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/point_file.h"
@@ -14,10 +16,15 @@
 #include "libvdbsynth/texture/surface_texture.h"
 #include "tests/support/point_shapes.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
+#include <functional>
+#include <map>
 #include <string>
+#include <vector>
 
 using namespace vdbsynth;
 
@@ -59,91 +66,151 @@ TextureTarget targetOf(const std::string& text) {
     return target;
 }
 
+struct Arguments {
+    std::vector<std::string> samples;
+    std::string method = "default";
+    SurfaceTextureOptions options;
+    int neighbours = 25, levels = 1, crop = 0;  // of the paper's methods, but `crop`
+    bool coherent = false, speed = false;
+    std::uint64_t seed = 0;
+};
+
 struct Made {
     TexturedSites sites;
     double texel;
 };
 
-Made make(const std::string& method, const TextureTarget& target, const SampleImage& sample,
-          const SurfaceTextureOptions& options, const RunContext& ctx) {
+Made make(const Arguments& arguments, const TextureTarget& target, const SampleImage& sample,
+          const RunContext& ctx) {
+    const std::string& method = arguments.method;
     if (method == "parameterize") {
-        PointParameterizationResult made = parameterizePoints(target, sample, {}, ctx);
+        PointParameterizationOptions own;
+        own.neighbours = arguments.neighbours;
+        if (arguments.speed)
+            own.blend = PointBlend::Alpha;  // as published; Automatic measures the sample first
+        PointParameterizationResult made = parameterizePoints(target, sample, own, ctx);
         return {std::move(made.sites), made.texel};
     }
     if (method == "match" || method == "match4") {
         PointMatchingOptions own;
-        own.levels = method == "match4" ? 4 : 1;
+        own.neighbours = arguments.neighbours;
+        own.levels = method == "match4" ? 4 : arguments.levels;
+        own.coherent = arguments.coherent;
         PointMatchingResult made = matchPoints(target, sample, own, ctx);
         return {std::move(made.sites), made.texel};
     }
     if (method == "hybrid") {
-        PointHybridResult made = texturePointsHybrid(target, sample, {}, ctx);
+        PointHybridOptions own;
+        own.parameterization.neighbours = arguments.neighbours;
+        own.levels = arguments.levels;
+        own.coherent = arguments.coherent;
+        PointHybridResult made = texturePointsHybrid(target, sample, own, ctx);
         return {std::move(made.sites), made.texel};
     }
-    SurfaceTextureResult made = textureSurface(target, {sample}, options, ctx);
+    SurfaceTextureResult made = textureSurface(target, {sample}, arguments.options, ctx);
     return {std::move(made.sites), made.texel};
+}
+
+SampleImage cropped(const SampleImage& image, int side) {
+    if (side <= 0) return image;
+    SampleImage part;
+    part.width = std::min(side, image.width);
+    part.height = std::min(side, image.height);
+    part.channels = image.channels;
+    for (int y = 0; y < part.height; ++y)
+        part.values.insert(part.values.end(), image.texel(0, y),
+                           image.texel(0, y) + part.width * part.channels);
+    return part;
 }
 
 double secondsNow() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+// Of all threads, which other work on the machine does not change much.
+double processorNow() {
+    return double(std::clock()) / CLOCKS_PER_SEC;
+}
+
+// False where a word is unknown.
+bool readArguments(int argc, char** argv, Arguments& arguments) {
+    CoordinateOptions& synthesis = arguments.options.synthesis;
+    const std::map<std::string, std::function<void(double)>> numbers{
+        {"--seed", [&](double v) { arguments.seed = std::uint64_t(v); }},
+        {"--crop", [&](double v) { arguments.crop = int(v); }},
+        {"--neighbours", [&](double v) { arguments.neighbours = int(v); }},
+        {"--levels", [&](double v) { arguments.levels = synthesis.levels = int(v); }},
+        {"--coherence", [&](double v) { synthesis.coherence = v; }},
+        {"--passes", [&](double v) { synthesis.passes = int(v); }},
+        {"--coarse-passes", [&](double v) { synthesis.coarsePasses = int(v); }},
+        {"--similar", [&](double v) { synthesis.similar = int(v); }},
+        {"--uniformity", [&](double v) { synthesis.uniformity = v; }},
+        {"--histogram", [&](double v) { synthesis.histogram = v; }},
+        {"--turn", [&](double v) { synthesis.turn = v; }},
+        {"--blend",
+         [&](double v) { arguments.options.blend = v > 0 ? SeamBlend::Histogram : SeamBlend::Off; }},
+    };
+    for (int i = 2; i < argc; ++i) {
+        const std::string word = argv[i];
+        const auto number = numbers.find(word);
+        if (word == "--speed")
+            arguments.speed = true;
+        else if (word == "--coherent")
+            arguments.coherent = true;
+        else if (word == "--method" && i + 1 < argc)
+            arguments.method = argv[++i];
+        else if (number != numbers.end() && i + 1 < argc)
+            number->second(std::atof(argv[++i]));
+        else if (word.rfind("--", 0) == 0)
+            return false;
+        else
+            arguments.samples.push_back(word);
+    }
+    return !arguments.samples.empty();
+}
+
+void measure(const std::string& path, const Arguments& arguments, const TextureTarget& target,
+             const RunContext& ctx) {
+    const SampleImage sample = cropped(test::sampleOf(readRaster(path)), arguments.crop);
+    const double begun = secondsNow(), processorBegun = processorNow();
+    const Made result = make(arguments, target, sample, ctx);
+    const double seconds = secondsNow() - begun, processor = processorNow() - processorBegun;
+    std::printf("%-28s", path.substr(path.rfind('/') + 1).c_str());
+    if (!arguments.speed) {
+        const test::TextureNumbers n = test::textureNumbers(target, result.sites, sample, result.texel, ctx);
+        std::printf(" %8.3f %8.3f %8.3f %8.3f %8.3f %8.3f", n.histogram, n.steps, n.seams, n.patches, n.wide,
+                    n.coherent);
+    }
+    const double points = double(target.point.size());
+    std::printf(" %9.0f %9.0f\n", points / seconds, points / processor);
+    std::fflush(stdout);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-    RunContext ctx;
-    SurfaceTextureOptions options;
-    std::string method = "default";
-    std::vector<std::string> samples;
-    for (int i = 2; i < argc; ++i) {
-        const std::string text = argv[i];
-        const auto value = [&] { return i + 1 < argc ? std::atof(argv[++i]) : 0.0; };
-        if (text == "--method" && i + 1 < argc)
-            method = argv[++i];
-        else if (text == "--seed")
-            ctx.seed = std::uint64_t(value());
-        else if (text == "--coherence")
-            options.synthesis.coherence = value();
-        else if (text == "--passes")
-            options.synthesis.passes = int(value());
-        else if (text == "--uniformity")
-            options.synthesis.uniformity = value();
-        else if (text == "--histogram")
-            options.synthesis.histogram = value();
-        else if (text == "--turn")
-            options.synthesis.turn = value();
-        else if (text == "--blend")
-            options.blend = value() > 0 ? SeamBlend::Histogram : SeamBlend::Off;
-        else if (text == "--similar")
-            options.synthesis.similar = int(value());
-        else if (text == "--coarse-passes")
-            options.synthesis.coarsePasses = int(value());
-        else if (text == "--levels")
-            options.synthesis.levels = int(value());
-        else
-            samples.push_back(text);
-    }
-    if (argc < 3 || samples.empty()) {
-        std::fprintf(stderr,
-                     "usage: texture_quality TARGET SAMPLE... [--method "
-                     "default|parameterize|match|match4|hybrid] [--seed N] [--coherence X] [--passes N] "
-                     "[--similar N] [--levels N] [--uniformity X] [--histogram X]\n");
+    Arguments arguments;
+    if (argc < 3 || !readArguments(argc, argv, arguments)) {
+        std::fprintf(
+            stderr,
+            "usage: texture_quality TARGET SAMPLE... [--method "
+            "default|parameterize|match|match4|hybrid] [--speed] [--crop N] [--seed N] [--neighbours N] "
+            "[--levels N] [--coherent] [--coherence X] [--passes N] [--coarse-passes N] [--similar N] "
+            "[--uniformity X] [--histogram X] [--turn DEGREES] [--blend 0|1]\n");
         return 2;
     }
-    const TextureTarget target = targetOf(argv[1]);
-    std::printf("%-28s %8s %8s %8s %8s %8s %8s %9s\n", "sample", "W1", "steps", "seams", "patches", "wide",
-                "coherent", "points/s");
-    for (const std::string& path : samples) {
-        const SampleImage sample = test::sampleOf(readRaster(path));
-        const double begun = secondsNow();
-        const Made result = make(method, target, sample, options, ctx);
-        const double seconds = secondsNow() - begun;
-        const test::TextureNumbers numbers =
-            test::textureNumbers(target, result.sites, sample, result.texel, ctx);
-        std::printf("%-28s %8.3f %8.3f %8.3f %8.3f %8.3f %8.3f %9.0f\n",
-                    path.substr(path.rfind('/') + 1).c_str(), numbers.histogram, numbers.steps, numbers.seams,
-                    numbers.patches, numbers.wide, numbers.coherent, double(target.point.size()) / seconds);
-        std::fflush(stdout);
+    try {
+        RunContext ctx;
+        ctx.seed = arguments.seed;
+        const TextureTarget target = targetOf(argv[1]);
+        std::printf("%-28s", "sample");
+        if (!arguments.speed)
+            std::printf(" %8s %8s %8s %8s %8s %8s", "W1", "steps", "seams", "patches", "wide", "coherent");
+        std::printf(" %9s %9s\n", "points/s", "by a core");
+        for (const std::string& path : arguments.samples) measure(path, arguments, target, ctx);
+    } catch (const Error& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return 1;
     }
     return 0;
 }

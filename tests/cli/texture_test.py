@@ -159,8 +159,8 @@ class Texture(CliTest):
                     normal = [(c == 14) - (c == 0) for c in (x, y, z)]
                     if any(normal):
                         points.append(f"{x} {y} {z} {normal[0]} {normal[1]} {normal[2]}")
-        self.write("cube.xyz", "\n".join(points))
-        said = self.ok("texture", "cube.xyz", *pictures, "--region", "auto", "-o", "c.ply").stderr
+        self.write("cube.xyzn", "\n".join(points))
+        said = self.ok("texture", "cube.xyzn", *pictures, "--region", "auto", "-o", "c.ply").stderr
         self.assertIn("by shape the images take", said)
         vertices = ply_vertices(self.read("c.ply"))
         faces = {tuple(round(v[n]) for n in ("nx", "ny", "nz")): set() for v in vertices}
@@ -169,7 +169,7 @@ class Texture(CliTest):
         single = [faces[tuple(s * (axis == a) for a in range(3))] for axis in range(3) for s in (-1, 1)]
         self.assertEqual([len(f) for f in single], [1] * 6)
         self.assertEqual(set.union(*single), {0, 1, 2, 3, 4, 5})
-        said = self.ok("texture", "cube.xyz", *pictures, "--region", "auto", "-o", "s.ply", "--region-blend", 3, "-o", "s.vdb").stderr
+        said = self.ok("texture", "cube.xyzn", *pictures, "--region", "auto", "-o", "s.ply", "--region-blend", 3, "-o", "s.vdb").stderr
         self.assertIn("points near borders of regions mix images", said)
         soft = ply_vertices(self.read("s.ply"))
         self.assertGreater(len({v["red"] for v in soft}), 12)
@@ -190,7 +190,7 @@ class Texture(CliTest):
                 found.setdefault(inside < 8, set()).add(v["source_exemplar"])
         self.assertEqual(found, {True: {1.0}, False: {0.0}})
         self.ok(*base, "b.vdb:surface")
-        self.fails(1, "divides two images", "texture", "b.off", "checks.png", "green.png", "green.png", "-o", "x.ply", "--region", "m.vdb:mask")
+        self.fails(2, "divides two images", "texture", "b.off", "checks.png", "green.png", "green.png", "-o", "x.ply", "--region", "m.vdb:mask")
         self.fails(3, "no grid", *base, "m.vdb:none")
         self.ok("mask", "ball", "-o", "far.vdb", "--center", "900,0,0", "--radius", 3)
         self.assertIn("green.png: is not used", self.ok(*base, "far.vdb:mask").stderr)

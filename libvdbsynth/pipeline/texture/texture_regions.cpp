@@ -3,7 +3,7 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
-#include "libvdbsynth/texture/site_regions.h"
+#include "libvdbsynth/points/site_regions.h"
 #include "libvdbsynth/vdb/grid_reader.h"
 
 #include <openvdb/openvdb.h>

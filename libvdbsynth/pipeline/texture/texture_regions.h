@@ -24,7 +24,7 @@ std::vector<std::int32_t> labelsInside(const TextureShape& shape, const LevelSet
 std::vector<std::int32_t> labelsIn(const TextureShape& shape, const openvdb::GridBase& grid,
                                    std::size_t samples);
 
-/// The numbers of samples by the target's shape (texture/site_regions.h), the largest region first. Notes say
+/// The numbers of samples by the target's shape (points/site_regions.h), the largest region first. Notes say
 /// the regions' shares and what they are bound by.
 /// @throw Error as siteRegions
 /// @par Repeats same bits for any number of threads

@@ -1,11 +1,11 @@
 // Follows [felzenszwalb2004] for the first regions, on a graph of sites in place of pixels.
-#include "libvdbsynth/texture/site_regions.h"
+#include "libvdbsynth/points/site_regions.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/geometry/point_neighbours.h"
 #include "libvdbsynth/math/disjoint_sets.h"
-#include "libvdbsynth/texture/site_regions_steps.h"
+#include "libvdbsynth/points/site_regions_steps.h"
 
 #include <algorithm>
 #include <map>

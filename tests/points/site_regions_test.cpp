@@ -1,4 +1,4 @@
-#include "libvdbsynth/texture/site_regions.h"
+#include "libvdbsynth/points/site_regions.h"
 
 #include "libvdbsynth/base/error.h"
 #include "tests/support/contexts.h"

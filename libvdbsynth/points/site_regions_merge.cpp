@@ -1,5 +1,5 @@
 // Regions merged across their weakest borders, small ones first.
-#include "libvdbsynth/texture/site_regions_steps.h"
+#include "libvdbsynth/points/site_regions_steps.h"
 
 #include <algorithm>
 #include <cmath>

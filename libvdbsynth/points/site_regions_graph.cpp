@@ -2,7 +2,7 @@
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/base/parallel_sort.h"
 #include "libvdbsynth/math/trigonometry.h"
-#include "libvdbsynth/texture/site_regions_steps.h"
+#include "libvdbsynth/points/site_regions_steps.h"
 
 #include <algorithm>
 #include <tuple>

@@ -1,5 +1,5 @@
 // Regions without a bound inside, halved: each half is nearer to one of two sites far apart.
-#include "libvdbsynth/texture/site_regions_steps.h"
+#include "libvdbsynth/points/site_regions_steps.h"
 
 #include <algorithm>
 #include <limits>

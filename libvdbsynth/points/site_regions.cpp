@@ -16,7 +16,7 @@ namespace vdbsynth {
 namespace {
 
 constexpr std::size_t kNeighbours = 8, kMostRegions = 4096;
-constexpr double kScale = 1;           // k of [felzenszwalb2004], radians times sites
+constexpr double kScale = 0.1;         // k of [felzenszwalb2004], radians times sites
 constexpr double kIslandShare = 0.01;  // of the largest piece's area
 
 std::vector<std::uint32_t> rootsOf(DisjointSets& sets, std::size_t count) {

@@ -27,8 +27,9 @@ SurfaceSites sitesAcrossCreases(std::vector<Vec3f> points, std::vector<Vec3f> no
 /// Neighbouring sites differ by the angle between their normals, halved over convex creases, as parts of
 /// things meet in concave ones [katz2003, after the minima rule]; over more than the mean distance of
 /// neighbours it is divided by the distance. Regions grow over edges in the order of that difference while it
-/// is at most the largest inside either region + 1 / its sites [felzenszwalb2004, k = 1]. Then the pair is
-/// merged again and again for which (mean difference along the border + 0.5 * difference of mean curvatures)
+/// is at most the largest inside either region + 0.1 / its sites [felzenszwalb2004, k = 0.1]. Then the pair
+/// is merged again and again for which (mean difference along the border + 0.5 * difference of mean
+/// curvatures)
 /// * sqrt(area of the smaller) / (share of its border that the other takes) is least, until as many regions
 /// remain as are asked for. Pairs whose border is not twice as strong as the inside of one of them merge too,
 /// and the largest regions are halved instead, along the graph, until there are enough. Pieces that no edge

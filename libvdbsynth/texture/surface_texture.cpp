@@ -6,6 +6,7 @@
 #include "libvdbsynth/coordinates/site_chart.h"
 #include "libvdbsynth/points/site_levels.h"
 #include "libvdbsynth/surface/direction_field.h"
+#include "libvdbsynth/texture/region_blend.h"
 #include "libvdbsynth/texture/seam_blend.h"
 
 #include <algorithm>
@@ -172,6 +173,16 @@ bool mixesSeams(const std::vector<SampleImage>& samples, SeamBlend blend, const 
     return suits;
 }
 
+void requireOptions(const SurfaceTextureOptions& options) {
+    if (!(options.texel >= 0) || !std::isfinite(options.texel))
+        throw Error(ErrorCode::InvalidOption, "`texel`: is below 0");
+    if (!(options.scale > 0) || !std::isfinite(options.scale))
+        throw Error(ErrorCode::InvalidOption, "`scale`: is not above 0");
+    if (!(options.regionBlend >= 0 && options.regionBlend <= kWidestRegionBlend))
+        throw Error(ErrorCode::InvalidOption, "`regionBlend`: is not from 0 to 1000 (texels)");
+    validate(options.synthesis);
+}
+
 }  // namespace
 
 void requireTarget(const TextureTarget& target) {
@@ -212,11 +223,7 @@ std::vector<Vec3f> targetTangents(const SurfaceSites& sites, const std::vector<V
 
 SurfaceTextureResult textureSurface(const TextureTarget& target, const std::vector<SampleImage>& samples,
                                     const SurfaceTextureOptions& options, const RunContext& ctx) {
-    if (!(options.texel >= 0) || !std::isfinite(options.texel))
-        throw Error(ErrorCode::InvalidOption, "`texel`: is below 0");
-    if (!(options.scale > 0) || !std::isfinite(options.scale))
-        throw Error(ErrorCode::InvalidOption, "`scale`: is not above 0");
-    validate(options.synthesis);
+    requireOptions(options);
     requireTarget(target);
     return withThreads(ctx, [&] {
         Welded whole = welded(target, ctx);
@@ -242,6 +249,10 @@ SurfaceTextureResult textureSurface(const TextureTarget& target, const std::vect
         if (!dense && mixesSeams(samples, options.blend, ctx))
             result.blended =
                 blendSeams(sites, coordinates, samples, result.texel, placed.values, placed.blended, ctx);
+        if (options.regionBlend > 0)
+            result.regionBlended =
+                blendRegions(sites, coordinates, samples, result.texel, options.regionBlend, dense,
+                             placed.values, placed.blended, ctx);
         result.sites = spreadOut(placed, whole.place, std::size_t(samples[0].channels));
         return result;
     });

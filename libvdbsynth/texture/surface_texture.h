@@ -30,6 +30,8 @@ enum class SeamBlend {
 /// read between texels (readCubic).
 inline constexpr double kMagnified = 1.5;
 
+inline constexpr double kWidestRegionBlend = 1000;  ///< [texels]
+
 struct SurfaceTextureOptions {
     double texel = 0;  ///< [world] side of a texel on the surface, above 0; 0: the mean distance of a point
                        ///< to its nearest, times `scale`
@@ -38,6 +40,8 @@ struct SurfaceTextureOptions {
     /// them.
     CoordinateOptions synthesis;
     SeamBlend blend = SeamBlend::Automatic;  ///< seam_blend.h
+    double regionBlend = 0;  ///< [texels] 0..1000: how far from borders between labels colours cross-fade
+                             ///< (region_blend.h); 0: not at all
 };
 
 inline constexpr double kGivenTurn = 8;  ///< [degrees]
@@ -45,7 +49,8 @@ inline constexpr double kGivenTurn = 8;  ///< [degrees]
 struct SurfaceTextureResult {
     TexturedSites sites;                       ///< one per point of the target
     double texel = 0;                          ///< [world]
-    std::size_t blended = 0;                   ///< number of points whose colour is a mix
+    std::size_t blended = 0;                   ///< number of sites whose colour is a mix where charts meet
+    std::size_t regionBlended = 0;             ///< the same where regions meet
     std::vector<CoordinateLevelStats> levels;  ///< coarse to fine
     std::vector<Vec3f> singularities;          ///< [world] of the directions
 };

@@ -146,6 +146,55 @@ class Texture(CliTest):
         self.ok("texture", "b.off", "checks.png", "green.png", "--region", "half.vdb", "-o", "r.ply")
         self.assertEqual({v["source_exemplar"] for v in ply_vertices(self.read("r.ply"))}, {0.0, 1.0})
 
+    def test_regions_by_shape(self):
+        """A cube's faces take an image each; colours cross-fade on request."""
+        pictures = []
+        for k in range(6):
+            self.write(f"{k}.png", png(16, 16, lambda x, y: (40 * k, 0, 0)))
+            pictures.append(f"{k}.png")
+        side, points = range(15), []
+        for x in side:
+            for y in side:
+                for z in side:
+                    normal = [(c == 14) - (c == 0) for c in (x, y, z)]
+                    if any(normal):
+                        points.append(f"{x} {y} {z} {normal[0]} {normal[1]} {normal[2]}")
+        self.write("cube.xyzn", "\n".join(points))
+        said = self.ok("texture", "cube.xyzn", *pictures, "--region", "auto", "-o", "c.ply").stderr
+        self.assertIn("by shape the images take", said)
+        vertices = ply_vertices(self.read("c.ply"))
+        faces = {tuple(round(v[n]) for n in ("nx", "ny", "nz")): set() for v in vertices}
+        for v in vertices:
+            faces[tuple(round(v[n]) for n in ("nx", "ny", "nz"))].add(v["source_exemplar"])
+        single = [faces[tuple(s * (axis == a) for a in range(3))] for axis in range(3) for s in (-1, 1)]
+        self.assertEqual([len(f) for f in single], [1] * 6)
+        self.assertEqual(set.union(*single), {0, 1, 2, 3, 4, 5})
+        said = self.ok("texture", "cube.xyzn", *pictures, "--region", "auto", "-o", "s.ply", "--region-blend", 3, "-o", "s.vdb").stderr
+        self.assertIn("points near borders of regions mix images", said)
+        soft = ply_vertices(self.read("s.ply"))
+        self.assertGreater(len({v["red"] for v in soft}), 12)
+        self.assertTrue(all((v["red"] % 40 == 0) or v["source_blended"] for v in soft))
+        self.assertIn("takes the strongest", self.ok("repeat", "s.ply", *pictures, "-o", "again.ply").stderr)
+        said = self.ok("texture", "b.off", "0.png", "1.png", "--region", "auto", "-o", "b.ply", "-o", "b.glb", "--region-blend", 2).stderr
+        self.assertIn("meet without it", said)
+
+    def test_regions_by_a_grid(self):
+        self.write("green.png", png(16, 16, lambda x, y: (0, 255, 0)))
+        self.ok("mask", "ball", "-o", "m.vdb", "--center", "12,12,12", "--radius", 8)
+        base = ("texture", "b.off", "checks.png", "green.png", "-o", "r.ply", "--region")
+        self.ok(*base, "m.vdb:mask")
+        found = {}
+        for v in ply_vertices(self.read("r.ply")):
+            inside = sum((v[c] - 12)**2 for c in "xyz")**0.5
+            if abs(inside - 8) > 1.5:
+                found.setdefault(inside < 8, set()).add(v["source_exemplar"])
+        self.assertEqual(found, {True: {1.0}, False: {0.0}})
+        self.ok(*base, "b.vdb:surface")
+        self.fails(2, "divides two images", "texture", "b.off", "checks.png", "green.png", "green.png", "-o", "x.ply", "--region", "m.vdb:mask")
+        self.fails(3, "no grid", *base, "m.vdb:none")
+        self.ok("mask", "ball", "-o", "far.vdb", "--center", "900,0,0", "--radius", 3)
+        self.assertIn("green.png: is not used", self.ok(*base, "far.vdb:mask").stderr)
+
     def plain(self, name):
         self.ok("texture", name, "checks.png", "-o", "plain_.ply")
         return self.read("plain_.ply")
@@ -238,6 +287,10 @@ class Hostile(CliTest):
         self.fails(1, "needs faces", "texture", "p.xyz", "good.png", "-o", "x.glb")
         self.fails(1, "--as levelset", "texture", "p.xyz", "good.png", "-o", "x.ply", "--as", "mesh")
         self.fails(2, "--region", "texture", "p.xyz", "good.png", "good.png", "-o", "x.ply")
+        self.fails(2, "--region auto: needs several images", *base, "--region", "auto")
+        self.fails(2, "--region-blend: has no effect on one image", *base, "--region-blend", 2)
+        self.fails(2, "--region-blend 2000", *base, "--region-blend", 2000)
+        self.fails(2, "or auto", *base, "--region", "automatic")
         self.fails(1, "no attribute part", "texture", "p.xyz", "good.png", "good.png", "-o", "x.ply", "--region-attribute", "part")
         self.fails(2, "--scale 0", *base, "--scale", 0)
         self.fails(2, "--direction", *base, "--direction", "axis:w")

@@ -62,6 +62,11 @@ TEST_CASE("normalValue: of a path that is read only the file's name is left", "[
     CHECK(normal("synth", "hole", "auto") == "auto");
     CHECK(normal("synth", "guide", "a/b.vdb:density") == "b.vdb:density");
     CHECK(normal("synth", "exemplar-map", "a/b.ply") == "b.ply");
+    CHECK(normal("texture", "region", "auto") == "auto");
+    CHECK(normal("texture", "region", "a/b.vdb:part") == "b.vdb:part");
+    CHECK(test::contains(refusal("texture", "region", "automatic"),
+                         "a model, FILE.vdb:GRID for a grid, or auto"));
+    CHECK(pathIn(*findOption("texture", "region"), "auto").empty());
     CHECK(normal("analogy", "direction", "a/s.csv") == "s.csv");
     CHECK(normal("analogy", "direction", "a/s.vdb:v") == "s.vdb:v");
     CHECK(normal("analogy", "direction", "axis:-z") == "axis:-z");

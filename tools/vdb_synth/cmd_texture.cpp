@@ -1,6 +1,7 @@
 #include "tools/vdb_synth/command.h"
 #include "tools/vdb_synth/direction_option.h"
 #include "tools/vdb_synth/texture_files.h"
+#include "tools/vdb_synth/texture_region_option.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
@@ -59,6 +60,7 @@ TextureOptions parseOptions(const Arguments& arguments) {
     options.method = methodOf(arguments.text("method"));
     options.scale = arguments.real("scale");
     options.levels = arguments.whole("levels");
+    options.regionBlend = arguments.real("region-blend");
     options.neighbours = arguments.whole("neighbours");
     options.coherent = arguments.has("coherent");
     options.matchSample = arguments.whole("match-sample");
@@ -79,18 +81,7 @@ TextureOptions parseOptions(const Arguments& arguments) {
     return options;
 }
 
-// What needs no file: which image goes where, and names of maps.
-void checkRegions(const Arguments& arguments, const std::vector<SampleFiles>& files) {
-    const bool region = arguments.has("region"), attribute = arguments.has("region-attribute");
-    if (region && attribute)
-        throw Error(ErrorCode::InvalidOption, "--region and --region-attribute: give one of them");
-    if (files.size() > 1 && !region && !attribute)
-        throw Error(ErrorCode::InvalidOption,
-                    arguments.inputs[2] +
-                        ": several images need --region MODEL or --region-attribute NAME, "
-                        "which say where each goes");
-    if (region && files.size() != 2)
-        throw Error(ErrorCode::InvalidOption, "--region: needs two images, for its outside and its inside");
+void checkDisplacement(const Arguments& arguments, const std::vector<SampleFiles>& files) {
     if (!arguments.has("displace")) return;
     const std::string map = arguments.text("displace");
     const auto& maps = files.front().maps;
@@ -125,21 +116,6 @@ void noteUnusedVoxels(const Run& run, const TextureShape& shape, const std::vect
     }
 }
 
-std::vector<std::int32_t> labelsFor(Run& run, const TextureShape& shape, std::size_t samples) {
-    if (run.arguments.has("region-attribute"))
-        return labelsOf(shape, run.arguments.text("region-attribute"), samples);
-    if (!run.arguments.has("region")) return {};
-    ModelOptions model;
-    if (shape.model.grid) model.voxelSize = voxelSizeOf(*shape.model.grid);
-    std::vector<std::int32_t> labels = labelsInside(shape, run.load(run.arguments.text("region"), model));
-    const auto inside = std::count(labels.begin(), labels.end(), 1);
-    if (inside == 0 || std::size_t(inside) == labels.size())
-        message(run.context, MessageLevel::Warning,
-                run.arguments.text("region") + ": " + (inside == 0 ? "none" : "all") +
-                    " of the target lies inside; one image is not used");
-    return labels;
-}
-
 void report(Run& run, const TextureShape& shape, const TextureResult& result) {
     nlohmann::json levels = nlohmann::json::array();
     for (const CoordinateLevelStats& level : result.levels)
@@ -163,6 +139,7 @@ void texture(Run& run) {
     const std::vector<std::string> paths = run.outputPaths();
     const std::vector<SampleFiles> files = sampleFilesOf(arguments);
     checkRegions(arguments, files);
+    checkDisplacement(arguments, files);
     TextureOutputOptions outputs = textureOutputsOf(run);
     requireOutputPaths(paths, outputs);
     requireModelPath(arguments.inputs[0]);
@@ -172,8 +149,9 @@ void texture(Run& run) {
     run.noteInput(arguments.inputs[0]);
     requireOutputs(shape, paths, outputs);
     noteUnusedVoxels(run, shape, paths);
+    noteUnblended(run, files, paths);
     if (arguments.has("direction")) options.direction = directionOf(run, "direction");
-    const std::vector<std::int32_t> labels = labelsFor(run, shape, samples.size());
+    const std::vector<std::int32_t> labels = regionLabels(run, shape, samples.size());
     const TextureResult result = textureShape(shape, samples, labels, options, run.context);
     if (arguments.has("displace"))
         displace(shape, result, samples, arguments.text("displace"), arguments.real("amplitude"));

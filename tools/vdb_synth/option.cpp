@@ -88,6 +88,7 @@ bool readsPath(const Option& option) {
         case Kind::ModelOrGrid:
         case Kind::Direction:
         case Kind::Hole:
+        case Kind::Region:
             return true;
         default:
             return false;
@@ -159,6 +160,8 @@ std::string allowedText(const Option& option) {
                    "_";
         case Kind::Hole:
             return "a model, a box i,j,k,I,J,K, or auto";
+        case Kind::Region:
+            return "a model, FILE.vdb:GRID for a grid, or auto";
         case Kind::File:
         case Kind::Output:
             return "a " + extensionList(option) + " file";

@@ -28,6 +28,7 @@ enum class Kind {
     Process,      ///< "make KIND", "make KIND --feature F"
     Direction,    ///< axis:x, around:y, radial, curvature, a grid, or a file of strokes
     Hole,         ///< auto, a box, or a model
+    Region,       ///< auto, a model, or FILE.vdb:GRID
     File,         ///< a file to read, of `extensions`
     NamedImage,   ///< NAME=FILE, an image to read
     Model,        ///< a file to read, of any kind that converts to a level set

@@ -202,6 +202,9 @@ std::string normalPath(const Option& option, const std::string& given) {
             if (readBox(given, box)) return normalBox(box);
             if (!isModelPath(given)) refuseValue(option, given);
             return fileOnly(given);
+        case Kind::Region:
+            if (given != "auto" && !namesGrid(given) && !isModelPath(given)) refuseValue(option, given);
+            return given == "auto" ? given : fileOnly(given);
         case Kind::Grid:
             if (!namesGrid(given)) refuseValue(option, given);
             return fileOnly(given);
@@ -266,6 +269,7 @@ std::string pathIn(const Option& option, const std::string& value) {
     if (option.kind == Kind::Direction && parseDirection(value, direction)) return "";
     if (option.kind == Kind::NamedImage) return value.substr(std::min(value.find('='), value.size() - 1) + 1);
     if (option.kind == Kind::Hole && (value == "auto" || readBox(value, box))) return "";
+    if (option.kind == Kind::Region && value == "auto") return "";
     return splitGridPath(value).file;
 }
 

@@ -89,12 +89,21 @@ std::vector<Option> controlTable() {
                     [](Option& o) {
                         o.says("of a texture: a further map of the image, of the same size").noting("");
                     }),
-        option(Kind::Model, "region", "MODEL")
-            .says("of two images: where the second one goes, the inside of a model")
+        option(Kind::Region, "region", "WHERE")
+            .says(
+                "of several images, where each goes: auto divides the target by creases, curvature and gaps "
+                "(the largest region gets the first), FILE.vdb:GRID is a grid of numbers from 0, of two "
+                "images also of truths or of weights (above 0.5: the second), a MODEL has the second of two "
+                "inside")
             .takenBy(kTexture),
         option(Kind::Text, "region-attribute", "NAME")
             .says("of several images: an attribute of the target's points that numbers the image for each, "
                   "from 0")
+            .takenBy(kTexture),
+        real("region-blend", "W", 0, 1000)
+            .measuredIn(Unit::Pixels)
+            .says("of several images: how far from borders between them colours cross-fade")
+            .initially("0")
             .takenBy(kTexture),
         option(Kind::Text, "displace", "NAME")
             .says("a map from --channel that moves the points along their normals")

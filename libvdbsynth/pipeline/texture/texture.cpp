@@ -7,9 +7,6 @@
 #include "libvdbsynth/texture/point_hybrid.h"
 #include "libvdbsynth/texture/point_matching.h"
 #include "libvdbsynth/texture/point_parameterization.h"
-#include "libvdbsynth/vdb/grid_reader.h"
-
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 
@@ -40,6 +37,18 @@ TextureTarget targetOf(const TextureShape& shape, const std::vector<std::int32_t
     return target;
 }
 
+void noteRegionBlend(const SurfaceTextureResult& made, double width, const RunContext& ctx) {
+    if (made.regionBlended == 0)
+        message(ctx, MessageLevel::Warning,
+                "`regionBlend` has no effect: no point is within " + roundedText(width, 4) +
+                    " pixels of another region along the surface");
+    else
+        message(ctx, MessageLevel::Note,
+                std::to_string(made.regionBlended) +
+                    " points near borders of regions mix images; repeat takes the one with the largest "
+                    "weight");
+}
+
 TextureResult byCoordinates(const TextureTarget& target, const std::vector<SampleImage>& images,
                             const TextureOptions& options, const RunContext& ctx) {
     SurfaceTextureOptions surface;
@@ -48,7 +57,9 @@ TextureResult byCoordinates(const TextureTarget& target, const std::vector<Sampl
     surface.synthesis.levels = options.levels;
     if (options.blend == TextureBlend::Off) surface.blend = SeamBlend::Off;
     if (options.blend == TextureBlend::Histogram) surface.blend = SeamBlend::Histogram;
+    surface.regionBlend = options.regionBlend;
     SurfaceTextureResult made = textureSurface(target, images, surface, ctx);
+    if (options.regionBlend > 0) noteRegionBlend(made, options.regionBlend, ctx);
     return {std::move(made.sites), made.texel, options.scale > kMagnified, std::move(made.levels)};
 }
 
@@ -125,6 +136,8 @@ void validate(const TextureOptions& options) {
                   std::to_string(options.neighbours), "a whole number from 4 to 128");
     requireOption(options.levels >= 0 && options.levels <= 12, "levels", std::to_string(options.levels),
                   "a whole number from 1 to 12");
+    requireOption(options.regionBlend >= 0 && options.regionBlend <= kWidestRegionBlend, "regionBlend",
+                  roundedText(options.regionBlend, 6), "a number from 0 to 1000 (pixels)");
     requireOption(options.matchSample == 0 || options.matchSample >= kSmallestSample, "matchSample",
                   std::to_string(options.matchSample), "at least 4 (texels)");
     const TextureMethod method = options.method;
@@ -158,38 +171,6 @@ TextureResult textureShape(const TextureShape& shape, const std::vector<TextureS
         const TextureTarget target = targetOf(shape, labels, options, ctx);
         return byMethod(target, imagesOf(samples), options, ctx);
     });
-}
-
-std::vector<std::int32_t> labelsOf(const TextureShape& shape, const std::string& attribute,
-                                   std::size_t samples) {
-    const Attribute* found = findAttribute(shape.attributes, attribute);
-    if (!found || found->width != 1) {
-        std::string names;
-        for (const Attribute& other : shape.attributes)
-            if (other.width == 1) names += (names.empty() ? "" : ", ") + other.name;
-        throw Error(ErrorCode::Unusable, shape.name + ": has no attribute " + attribute +
-                                             " of one number for `regionAttribute`; it has " +
-                                             (names.empty() ? "none" : names));
-    }
-    std::vector<std::int32_t> labels(shape.site.size(), -1);
-    for (std::size_t i = 0; i < found->values.size(); ++i) {
-        const float value = found->values[i];
-        if (!(value >= 0 && value < float(samples) && value == std::floor(value)))
-            throw Error(ErrorCode::BadData, shape.name + ": its attribute " + attribute + " has the value " +
-                                                roundedText(double(value), 6) + "; labels are 0 to " +
-                                                std::to_string(samples - 1) + ", one for each sample");
-        std::int32_t& label = labels[shape.siteOf[i]];
-        if (label < 0) label = std::int32_t(value);
-    }
-    return labels;
-}
-
-std::vector<std::int32_t> labelsInside(const TextureShape& shape, const LevelSet& model) {
-    const GridReader distance = scalarReader(*model.grid, GridSampling::Linear, "region");
-    std::vector<std::int32_t> labels;
-    for (const Vec3f& p : shape.site)
-        labels.push_back(distance(shape.origin + cast<double>(p)).value.z < 0 ? 1 : 0);
-    return labels;
 }
 
 void displace(TextureShape& shape, const TextureResult& result, const std::vector<TextureSample>& samples,

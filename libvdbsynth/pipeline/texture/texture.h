@@ -32,6 +32,8 @@ struct TextureOptions {
     std::optional<DirectionSource> direction;  ///< of the sample's u axis over the target; none: free
     CoordinateOptions synthesis;               ///< of the default method
     TextureBlend blend = TextureBlend::Automatic;
+    double regionBlend = 0;  ///< 0..1000 [texels], of the default method: how far from borders between
+                             ///< regions colours cross-fade (texture/region_blend.h)
     int neighbours = 25;    ///< 4..128, of the paper's methods
     int levels = 0;         ///< 1..12, of the sample's pyramid; 0: as many as fit
     bool coherent = false;  ///< of `match`: only candidates that continue neighbours
@@ -57,13 +59,6 @@ struct TextureResult {
 TextureResult textureShape(const TextureShape& shape, const std::vector<TextureSample>& samples,
                            const std::vector<std::int32_t>& labels, const TextureOptions& options,
                            const RunContext& ctx = {});
-
-/// The numbers of samples from an attribute of the target, one a site.
-/// @throw Error Unusable (no such attribute, several values an element), BadData (a label without a sample)
-std::vector<std::int32_t> labelsOf(const TextureShape& shape, const std::string& attribute,
-                                   std::size_t samples);
-/// 1 inside a model, 0 outside. @param model  its half-width limits nothing: beyond the band the sign counts
-std::vector<std::int32_t> labelsInside(const TextureShape& shape, const LevelSet& model);
 
 /// Moves all elements along their sites' normals by `amplitude` times a map's value (its first channel), and
 /// fills TextureShape::moved. Coordinates stay.

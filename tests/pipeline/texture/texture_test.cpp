@@ -97,6 +97,9 @@ TEST_CASE("textureShape: options out of range are refused before the work", "[pi
     options.levels = 13;
     CHECK(test::contains(thrown(options).message, "`levels`"));
     options = {};
+    options.regionBlend = 1001;
+    CHECK(test::contains(thrown(options).message, "`regionBlend`"));
+    options = {};
     options.matchSample = 1;
     CHECK(test::contains(thrown(options).message, "`matchSample`"));
     CHECK(thrown(withDirection(DirectionSource::Kind::Grid)).code == int(ErrorCode::InvalidOption));
@@ -116,25 +119,6 @@ TEST_CASE("textureShape: same bits for any number of threads, and it stops",
     CHECK(test::thrownWhenCancelled([&](const RunContext& ctx) {
               textureShape(shape, samples, {}, {}, ctx);
           }).code == int(ErrorCode::Cancelled));
-}
-
-TEST_CASE("labelsOf: from an attribute, each problem in words", "[pipeline][error]") {
-    Mesh mesh = test::squareMesh(2);
-    mesh.attributes.push_back({"part", 1, {0, 1, 0, 1}});
-    const TextureShape shape = test::shapeOf(mesh);
-    CHECK(labelsOf(shape, "part", 2) == std::vector<std::int32_t>{0, 1, 0, 1});
-    CHECK(test::contains(test::thrownBy([&] { labelsOf(shape, "no", 2); }).message, "it has part"));
-    CHECK(test::thrownBy([&] { labelsOf(shape, "part", 1); }).code == int(ErrorCode::BadData));
-    CHECK(test::thrownBy([&] { labelsOf(shape, "uv", 2); }).code == int(ErrorCode::Unusable));
-}
-
-TEST_CASE("labelsInside: the sign counts far beyond the band", "[pipeline]") {
-    LevelSet ball;
-    ball.grid = test::ball();  // radius 10
-    TextureShape shape;
-    shape.points = {{0, 0, 0}, {9, 0, 0}, {11, 0, 0}, {1000, 0, 0}};
-    makeSites(shape, {});
-    CHECK(labelsInside(shape, ball) == std::vector<std::int32_t>{1, 1, 0, 0});
 }
 
 TEST_CASE("displace: elements move along normals, sites stay", "[pipeline]") {

@@ -12,7 +12,8 @@
 namespace vdbsynth {
 namespace {
 
-constexpr std::size_t kExamined = 100000;  // sites, about, whose figures stand for the level's
+constexpr std::size_t kExamined = 100000;     // sites, about, whose figures stand for the level's
+constexpr std::size_t kOftenCounted = 50000;  // sites below which use is counted for every class
 constexpr int kClasses = 32;
 
 // The members of every class, in the order of their numbers.
@@ -49,9 +50,12 @@ void correctCoordinates(CoordinateLevel& level, int passes, const CoordinateOpti
     const float jumpFactor = 1 + float(options.coherence);
     std::vector<Placed> corrected;
     SourceUse use(level, options.uniformity, options.histogram);
-    for (int pass = 0; pass < passes; ++pass)
+    // Where sites are many a class changes little of the counts.
+    const bool often = level.sites.size() < kOftenCounted;
+    for (int pass = 0; pass < passes; ++pass) {
+        if (!often) use.count(level);
         for (const std::vector<std::uint32_t>& sites : members) {
-            use.count(level);
+            if (often) use.count(level);
             corrected.resize(sites.size());
             parallelFor(ctx, sites.size(), 1024, [&](std::size_t begin, std::size_t end) {
                 std::array<float, kFeature> feature;
@@ -68,6 +72,7 @@ void correctCoordinates(CoordinateLevel& level, int passes, const CoordinateOpti
                 level.tangent[sites[m]] = corrected[m].tangent;
             }
         }
+    }
 }
 
 CoordinateLevelStats levelStats(const CoordinateLevel& level, const RunContext& ctx) {

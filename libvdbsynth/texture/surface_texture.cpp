@@ -3,6 +3,7 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/base/parallel_sort.h"
 #include "libvdbsynth/coordinates/site_chart.h"
 #include "libvdbsynth/points/site_levels.h"
 #include "libvdbsynth/surface/direction_field.h"
@@ -33,8 +34,9 @@ Welded welded(const TextureTarget& target, const RunContext& ctx) {
         const Vec3f& p = target.point[i];
         return std::make_tuple(p.x, p.y, p.z);
     };
-    std::sort(order.begin(), order.end(),
-              [&](std::uint32_t a, std::uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
+    parallelSort(ctx, order, [&](std::uint32_t a, std::uint32_t b) {
+        return key(a) != key(b) ? key(a) < key(b) : a < b;
+    });
     std::vector<std::uint32_t> first(target.point.size());
     std::vector<std::uint32_t> kept;  // at one place: they face different ways, so they are few
     for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {

@@ -87,7 +87,7 @@ TEST_CASE("blendRegions: where three regions meet their weights sum to 1") {
     for (float value : strip.values) REQUIRE(value == Approx(1));
 }
 
-TEST_CASE("blendRegions: nothing without labels or borders; a width of 0 is refused", "[error]") {
+TEST_CASE("blendRegions: nothing without labels or borders, a width of 0 is refused", "[error]") {
     Strip strip(0, 1);
     strip.sites.label.assign(strip.values.size(), 1);
     CHECK(strip.blend({flatSample(0), flatSample(1)}, 4) == 0);

@@ -34,9 +34,9 @@ struct TextureOptions {
     TextureBlend blend = TextureBlend::Automatic;
     double regionBlend = 0;  ///< 0..1000 [texels], of the default method: how far from borders between
                              ///< regions colours cross-fade (texture/region_blend.h)
-    int neighbours = 25;    ///< 4..128, of the paper's methods
-    int levels = 0;         ///< 1..12, of the sample's pyramid; 0: as many as fit
-    bool coherent = false;  ///< of `match`: only candidates that continue neighbours
+    int neighbours = 25;     ///< 4..128, of the paper's methods
+    int levels = 0;          ///< 1..12, of the sample's pyramid; 0: as many as fit
+    bool coherent = false;   ///< of `match`: only candidates that continue neighbours
     int matchSample = 0;  ///< [texels] side of the part of the sample that `hybrid` matches in; 0: all of it
 };
 

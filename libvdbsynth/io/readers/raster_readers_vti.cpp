@@ -145,9 +145,20 @@ void copyPiece(const Piece& piece, const std::vector<float>& values, const Exten
             }
 }
 
+// A flat piece of cells at the far side of thicker ones has no cell of the whole.
+void requireInside(const std::string& path, const std::vector<Piece>& pieces, const Extent& whole,
+                   bool cells) {
+    for (const Piece& piece : pieces)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            if (piece.extent.first[axis] - whole.first[axis] + piece.extent.side(axis, cells) >
+                whole.side(axis, cells))
+                refuse(path, "one of its pieces is flat beside others that are not; write it as one piece");
+}
+
 void readPieces(const std::string& path, const std::vector<Piece>& pieces, const Extent& whole,
                 const VtkEncoding& encoding, Raster& raster, const RunContext& ctx) {
     const bool cells = pieces.front().array.cells;
+    requireInside(path, pieces, whole, cells);
     if (pieces.size() == 1) {
         raster.values = readVtkArray(path, pieces.front().array, encoding, raster.values.size(), ctx);
         return;

@@ -133,6 +133,8 @@ TEST_CASE("readVti: pieces are put together, gaps are said", "[io][oracle]") {
     CHECK(test::contains(read.said, "2 samples without data"));
     read = reading(image(whole, left + piece("1 3 0 1 0 0", array("w", "1 2 3 5 6 7"), array("c", "11 12"))));
     CHECK(test::contains(read.thrown.message, "different arrays"));
+    read = reading(image(whole, left + piece("3 3 0 1 0 0", array("v", "3 7"), array("c", "0"))), "c");
+    CHECK(test::contains(read.thrown.message, "flat beside others"));
     std::string same;
     for (int i = 0; i < 9; ++i) same += left;
     CHECK(test::contains(reading(image(whole, same)).thrown.message, "overlap"));

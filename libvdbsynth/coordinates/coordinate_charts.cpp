@@ -65,7 +65,8 @@ private:
         }
     }
 
-    // The mean of what the chart's sites around say; false where they differ, or turn from the field.
+    // The mean of what the chart's sites around say; false where they differ, or are rotated too far from the
+    // field.
     bool continues(std::uint32_t from, std::uint32_t to, Placed& placed) const {
         const Vec3f& normal = mLevel.sites.normal[to];
         const SiteFrame frame = siteFrame(mLevel.sites.normal[from], mLevel.tangent[from]);

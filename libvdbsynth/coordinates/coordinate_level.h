@@ -8,8 +8,8 @@ namespace vdbsynth {
 struct CoordinateLevel {
     SurfaceSites sites;
     std::vector<Vec3f> field;         ///< [sites] the directions of +u that are wanted
-    std::vector<Vec3f> tangent;       ///< [sites] those that charts have, within the turn of the field
-    float leastCosine = 1;            ///< of the turn
+    std::vector<Vec3f> tangent;       ///< [sites] those that charts have
+    float leastCosine = 1;            ///< of the angle between the two
     std::vector<std::int32_t> label;  ///< [sites]
     std::vector<Vec2f> coordinate;    ///< [sites] in texels
     std::vector<SampleLevel> samples;

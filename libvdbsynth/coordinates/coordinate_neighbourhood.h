@@ -11,16 +11,16 @@ namespace vdbsynth {
 
 inline constexpr std::size_t kMostNeighbours = 16;  ///< that a site looks at
 inline constexpr float kSame = 0.6f;                ///< [steps] within which continuations are one
-inline constexpr float kSameTurn = 0.95f;           ///< cosine of the angle within which they are
+inline constexpr float kSameRotation = 0.95f;       ///< cosine of the angle within which they are
 inline constexpr float kJump = 0.03f;  ///< of the features' variance, what a jump costs however well it fits
 
 /// A neighbour as a site sees it.
 struct Continuation {
     Vec2f here;           ///< [texels] where its coordinates continue to at the site
-    Vec2f turn;           ///< from the site's frame to its own
+    Vec2f rotation;       ///< from the site's frame to its own
     Vec2f place;          ///< [texels] of the neighbour, in the site's frame
     Vec3f tangent;        ///< its tangent, carried to the site
-    bool allowed = true;  ///< its tangent is within the turn of the site's field
+    bool allowed = true;  ///< its tangent is within the largest rotation from the site's field
 };
 
 /// What a site gets.
@@ -33,128 +33,32 @@ struct Placed {
 class Neighbourhood {
 public:
     /// @param only  [sites] neighbours for which this is zero are left out; null: none is
-    Neighbourhood(const CoordinateLevel& level, std::size_t site, const char* only = nullptr)
-        : mLevel(level), mSample(level.samples[std::size_t(level.label[site])]), mSite(site) {
-        const SiteFrame own = siteFrame(level.sites.normal[site], level.tangent[site]);
-        const float toTexels = 1 / float(level.texel);
-        for (std::size_t k = level.sites.begin[site]; k < level.sites.begin[site + 1]; ++k) {
-            const std::uint32_t j = level.sites.neighbours[k];
-            if (level.label[j] != level.label[site] || (only && !only[j])) continue;
-            const SiteFrame frame = siteFrame(level.sites.normal[j], level.tangent[j]);
-            const Vec3f difference = level.sites.point[site] - level.sites.point[j];
-            const Vec2f offset = flattened(frame, difference) * toTexels;
-            Continuation& c = mNear[mCount];
-            c.here = level.coordinate[j] + offset;
-            c.turn = turnBetween(own, frame);
-            c.place = turned(offset, {-c.turn.x, c.turn.y});
-            c.tangent = carried(level.tangent[j], level.sites.normal[j], level.sites.normal[site]);
-            c.allowed = dot(c.tangent, level.field[site]) >= level.leastCosine - 1e-5f;
-            if (++mCount == kMostNeighbours) break;
-        }
-    }
+    Neighbourhood(const CoordinateLevel& level, std::size_t site, const char* only = nullptr);
 
     bool empty() const { return mCount == 0; }
     std::size_t count() const { return mCount; }
     const Continuation& operator[](std::size_t k) const { return mNear[k]; }
 
     /// The feature that would fit: appearances at the taps, as the neighbours continue to them.
-    void wanted(float* feature) const {
-        std::array<float, 4 * kAppearance> taps{};
-        std::array<int, 4> found{};
-        for (std::size_t k = 0; k < mCount; ++k) {
-            const std::size_t quadrant =
-                (mNear[k].place.x >= 0 ? 1u : 0u) + (mNear[k].place.y >= 0 ? 2u : 0u);
-            addTap(k, quadrant, taps.data() + quadrant * kAppearance);
-            ++found[quadrant];
-        }
-        for (std::size_t q = 0; q < 4; ++q) {
-            if (found[q] == 0) {
-                addTap(nearestTo(q), q, taps.data() + q * kAppearance);
-                continue;
-            }
-            const float share = 1 / float(found[q]);
-            for (std::size_t d = 0; d < kAppearance; ++d) taps[q * kAppearance + d] *= share;
-        }
-        mSample.toFeature(taps.data(), feature);
-    }
+    void wanted(float* feature) const;
 
     /// The best of the site's own place, its neighbours' continuations and the texels like these. What
     /// continues several neighbours becomes their mean, so that charts do not shear.
-    Placed best(const float* feature, float jumpFactor, const SourceUse& use) const {
-        const float jumpCost = kJump * float(mSample.spread);
-        Choice choice{{mLevel.coordinate[mSite], mLevel.tangent[mSite]}};
-        const std::int32_t own = mSample.node(choice.placed.at);
-        take(choice.placed, own, costOf(own, feature) + jumpCost, use, choice);
-        for (std::size_t k = 0; k < mCount; ++k)
-            if (mNear[k].allowed)
-                consider({mNear[k].here, mNear[k].tangent}, feature, jumpFactor, jumpCost, use, choice);
-        Placed settled;
-        return meanNear(choice.placed, settled) > 0 ? settled : choice.placed;
-    }
+    Placed best(const float* feature, float jumpFactor, const SourceUse& use) const;
 
-    /// The mean of the continuations within some steps of a place and kSameTurn of its tangent.
+    /// The mean of the continuations within some steps of a place and kSameRotation of its tangent.
     /// @return their number
-    std::size_t meanNear(const Placed& placed, Placed& mean, float steps = kSame) const {
-        const float reach = steps * float(mSample.step);
-        Vec2f offset;
-        Vec3f tangent;
-        std::size_t count = 0;
-        for (std::size_t k = 0; k < mCount; ++k) {
-            const Vec2f off = mNear[k].here - placed.at;
-            if (dot(off, off) > reach * reach || dot(mNear[k].tangent, placed.tangent) < kSameTurn) continue;
-            offset = offset + off;
-            tangent = tangent + mNear[k].tangent;
-            ++count;
-        }
-        if (count == 0) return 0;
-        mean.at = placed.at + offset * (1 / float(count));
-        mean.tangent = tangentNear(mLevel.sites.normal[mSite], tangent);
-        if (!mSample.isSource(mean.at) || dot(mean.tangent, mLevel.field[mSite]) < mLevel.leastCosine - 1e-5f)
-            return 0;
-        return count;
-    }
+    std::size_t meanNear(const Placed& placed, Placed& mean, float steps = kSame) const;
 
     /// The node whose feature is nearest to one, the first of equally near ones.
-    std::int32_t nearestNode(const float* feature) const {
-        std::int32_t nearest = 0;
-        float least = std::numeric_limits<float>::infinity();
-        for (std::int32_t node = 0; node < mSample.width * mSample.height; ++node) {
-            if (!mSample.isSource(mSample.centre(node))) continue;
-            const float cost = costOf(node, feature);
-            if (cost < least) {
-                least = cost;
-                nearest = node;
-            }
-        }
-        return nearest;
-    }
+    std::int32_t nearestNode(const float* feature) const;
 
 private:
-    void addTap(std::size_t k, std::size_t quadrant, float* sum) const {
-        const Vec2f tap = mNear[k].here + turned(kTaps[quadrant] * float(mSample.step), mNear[k].turn);
-        const float* a = mSample.appearance.data() + std::size_t(mSample.node(tap)) * kAppearance;
-        for (std::size_t d = 0; d < kAppearance; ++d) sum[d] += a[d];
-    }
+    void addTap(std::size_t k, std::size_t quadrant, float* sum) const;
 
-    std::size_t nearestTo(std::size_t quadrant) const {
-        std::size_t nearest = 0;
-        float least = std::numeric_limits<float>::infinity();
-        for (std::size_t k = 0; k < mCount; ++k) {
-            const Vec2f off = mNear[k].place - kTaps[quadrant] * float(mSample.step);
-            if (dot(off, off) < least) {
-                least = dot(off, off);
-                nearest = k;
-            }
-        }
-        return nearest;
-    }
+    std::size_t nearestTo(std::size_t quadrant) const;
 
-    float costOf(std::int32_t node, const float* feature) const {
-        const float* f = mSample.feature.data() + std::size_t(node) * kFeature;
-        float sum = 0;
-        for (std::size_t d = 0; d < kFeature; ++d) sum += (f[d] - feature[d]) * (f[d] - feature[d]);
-        return sum;
-    }
+    float costOf(std::int32_t node, const float* feature) const;
 
     struct Choice {
         Placed placed;
@@ -162,29 +66,12 @@ private:
     };
 
     void take(const Placed& placed, std::int32_t node, float cost, const SourceUse& use,
-              Choice& choice) const {
-        if (!mSample.isSource(placed.at)) return;
-        cost += use.cost(mLevel.label[mSite], node);
-        if (cost < choice.cost) choice = {placed, cost};
-    }
+              Choice& choice) const;
 
     void consider(const Placed& placed, const float* feature, float jumpFactor, float jumpCost,
-                  const SourceUse& use, Choice& choice) const {
-        const std::int32_t node = mSample.node(placed.at);
-        take(placed, node, costOf(node, feature), use, choice);
-        // Texels like it, at the same place within the texel.
-        const Vec2f within =
-            mSample.isSource(placed.at) ? foldedIn(placed.at) - mSample.centre(node) : Vec2f{};
-        const std::int32_t* like = mSample.similar.data() + std::size_t(node) * mSample.similarCount;
-        for (std::size_t k = 0; k < mSample.similarCount && like[k] >= 0; ++k)
-            take({mSample.centre(like[k]) + within, placed.tangent}, like[k],
-                 jumpCost + jumpFactor * costOf(like[k], feature), use, choice);
-    }
+                  const SourceUse& use, Choice& choice) const;
 
-    Vec2f foldedIn(const Vec2f& at) const {
-        const float w = float(mSample.width * mSample.stride), h = float(mSample.height * mSample.stride);
-        return {at.x - w * std::floor(at.x / w), at.y - h * std::floor(at.y / h)};
-    }
+    Vec2f foldedIn(const Vec2f& at) const;
 
     const CoordinateLevel& mLevel;
     const SampleLevel& mSample;

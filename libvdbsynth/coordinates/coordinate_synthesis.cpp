@@ -157,7 +157,8 @@ void validate(const CoordinateOptions& options) {
     require(options.coherence >= 0 && options.coherence <= 10, "`coherence`: is not between 0 and 10");
     require(options.uniformity >= 0 && options.uniformity <= 10, "`uniformity`: is not between 0 and 10");
     require(options.histogram >= 0 && options.histogram <= 10, "`histogram`: is not between 0 and 10");
-    require(options.turn >= 0 && options.turn <= 180, "`turn`: is not between 0 and 180 degrees");
+    require(options.maxRotation >= 0 && options.maxRotation <= 180,
+            "`maxRotation`: is not between 0 and 180 degrees");
     require(options.levels >= 0 && options.levels <= 12, "`levels`: is not between 0 and 12");
 }
 
@@ -166,8 +167,9 @@ CoordinateResult synthesizeCoordinates(CoordinateSites sites, const std::vector<
                                        const RunContext& ctx) {
     validate(options);
     requireSites(sites, samples, texel);
-    Hierarchy hierarchy = hierarchyOf(
-        finestLevel(std::move(sites), texel, float(cosine(options.turn * kPi / 180))), samples, options, ctx);
+    Hierarchy hierarchy =
+        hierarchyOf(finestLevel(std::move(sites), texel, float(cosine(options.maxRotation * kPi / 180))),
+                    samples, options, ctx);
     const bool dense = meanStep(hierarchy.levels[0].sites) < kDenser * texel;
     CoordinateResult result;
     Stage stage(ctx, "texture coordinates", hierarchy.levels.size());

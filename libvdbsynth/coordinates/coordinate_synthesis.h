@@ -17,9 +17,10 @@ struct CoordinateOptions {
     double uniformity = 0.25;  ///< 0..10: how much a place of the sample costs that is used twice as often as
                                ///< others, as a share of the features' variance
     double histogram = 0.75;   ///< 0..10: the same for values that are used twice as often as in the sample
-    /// [degrees] 0..180: how far charts may turn from the sites' tangents. A field of directions bends with
-    /// the surface and between its singularities; charts that follow it exactly are sheared and break up.
-    double turn = 60;
+    /// [degrees] 0..180: how far charts may be rotated from the sites' tangents. A field of directions bends
+    /// with the surface and between its singularities; charts that follow it exactly are sheared and break
+    /// up.
+    double maxRotation = 60;
     int levels = 0;  ///< of the hierarchy, 1..12; 0: as many as the sample's size asks for
 };
 

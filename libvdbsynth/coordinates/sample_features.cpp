@@ -213,7 +213,7 @@ void smoothAlong(const SampleImage& from, SampleImage& to, const std::vector<flo
     parallelFor(ctx, std::size_t(from.height), 8, [&](std::size_t begin, std::size_t end) {
         for (int y = int(begin); y < int(end); ++y)
             for (int x = 0; x < from.width; ++x) {
-                float* out = const_cast<float*>(to.texel(x, y));
+                float* out = to.texel(x, y);
                 std::fill_n(out, channels, 0.0f);
                 for (int d = -reach; d <= reach; ++d) {
                     const int place = folded[std::size_t((columns ? x : y) + d + reach)];
@@ -230,7 +230,7 @@ SampleImage reduced(const SampleImage& image, int stride, int width, int height)
     out.values.assign(out.texels() * std::size_t(image.channels), 0);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
-            float* sum = const_cast<float*>(out.texel(x, y));
+            float* sum = out.texel(x, y);
             int count = 0;
             for (int j = y * stride; j < std::min((y + 1) * stride, image.height); ++j)
                 for (int i = x * stride; i < std::min((x + 1) * stride, image.width); ++i, ++count)

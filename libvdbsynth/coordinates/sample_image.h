@@ -15,8 +15,10 @@ struct SampleImage {
     std::vector<float> values;  ///< [height x width x channels], the lowest row first
 
     std::size_t texels() const { return std::size_t(width) * std::size_t(height); }
-    const float* texel(int x, int y) const {
-        return values.data() + (std::size_t(y) * std::size_t(width) + std::size_t(x)) * std::size_t(channels);
+    const float* texel(int x, int y) const { return values.data() + offset(x, y); }
+    float* texel(int x, int y) { return values.data() + offset(x, y); }
+    std::size_t offset(int x, int y) const {
+        return (std::size_t(y) * std::size_t(width) + std::size_t(x)) * std::size_t(channels);
     }
 };
 

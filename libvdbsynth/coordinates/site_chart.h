@@ -1,8 +1,8 @@
 #pragma once
+#include "libvdbsynth/math/smallest_rotation.h"
 #include "libvdbsynth/math/vec2.h"
 #include "libvdbsynth/points/surface_sites.h"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -29,21 +29,14 @@ inline Vec2f flattened(const SiteFrame& frame, const Vec3f& difference) {
 }
 
 /// The rotation (cosine, sine) that takes directions of one frame to another's.
-inline Vec2f turnBetween(const SiteFrame& from, const SiteFrame& to) {
+inline Vec2f frameRotation(const SiteFrame& from, const SiteFrame& to) {
     const float c = dot(from.s, to.s) + dot(from.t, to.t), s = dot(from.s, to.t) - dot(from.t, to.s);
     const float size = std::sqrt(c * c + s * s);
     return size > 1e-6f ? Vec2f{c / size, s / size} : Vec2f{1, 0};
 }
 
-inline Vec2f turned(const Vec2f& v, const Vec2f& turn) {
-    return {turn.x * v.x - turn.y * v.y, turn.y * v.x + turn.x * v.y};
-}
-
-/// A vector after the smallest rotation that takes one unit normal to another [moller1999].
-inline Vec3f carried(const Vec3f& vector, const Vec3f& from, const Vec3f& to) {
-    const Vec3f axis = cross(from, to);
-    const float cosine = std::max(dot(from, to), -0.999f);
-    return vector * cosine + cross(axis, vector) + axis * (dot(axis, vector) / (1 + cosine));
+inline Vec2f rotated(const Vec2f& v, const Vec2f& rotation) {
+    return {rotation.x * v.x - rotation.y * v.y, rotation.y * v.x + rotation.x * v.y};
 }
 
 /// A unit tangent nearest to a direction; any one where that is along the normal.

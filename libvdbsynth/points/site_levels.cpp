@@ -3,7 +3,6 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/base/parallel_sort.h"
-#include "libvdbsynth/math/index_box.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,11 +23,6 @@ struct InCell {
         return cell.x == other.cell.x && cell.y == other.cell.y && cell.z == other.cell.z;
     }
 };
-
-// Far outliers share the outermost cells.
-int cellNumber(double at) {
-    return int(std::clamp(std::floor(at), -double(1 << 30), double(1 << 30)));
-}
 
 // A group of a cell's sites on one side of a wall.
 struct Group {
@@ -60,14 +54,20 @@ void reorder(CoarserSites& coarser, const RunContext& ctx) {
 
 }  // namespace
 
+Index3 cellOf(const Vec3f& point, double cell) {
+    const auto number = [cell](float x) {
+        return int(std::clamp(std::floor(double(x) / cell), -double(1 << 30), double(1 << 30)));
+    };
+    return {number(point.x), number(point.y), number(point.z)};
+}
+
 CoarserSites mergedByCells(const std::vector<Vec3f>& points, const std::vector<Vec3f>& normals, double cell,
                            const RunContext& ctx) {
     if (!(cell > 0)) throw Error(ErrorCode::InvalidOption, "`cell`: is not above 0");
     std::vector<InCell> cells(points.size());
     parallelFor(ctx, points.size(), 16384, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const Vec3d at = cast<double>(points[i]) * (1.0 / cell);
-            cells[i] = {{cellNumber(at.x), cellNumber(at.y), cellNumber(at.z)}, std::uint32_t(i)};
+            cells[i] = {cellOf(points[i], cell), std::uint32_t(i)};
         }
     });
     parallelSort(ctx, cells);

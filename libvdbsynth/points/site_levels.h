@@ -1,9 +1,13 @@
 #pragma once
+#include "libvdbsynth/math/index_box.h"
 #include "libvdbsynth/points/surface_sites.h"
 
 #include <vector>
 
 namespace vdbsynth {
+
+/// The cube of side `cell` that a point lies in; far outliers share the outermost cubes. @param cell  above 0
+Index3 cellOf(const Vec3f& point, double cell);
 
 /// Sites merged into fewer, each the mean of those near each other.
 struct CoarserSites {

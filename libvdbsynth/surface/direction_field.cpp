@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/points/site_levels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -227,10 +228,7 @@ DirectionField smoothDirectionField(const SurfaceSites& sites, const std::vector
 std::vector<Index3> sitePlaces(const SurfaceSites& sites, double cell) {
     std::vector<Index3> places;
     places.reserve(sites.size());
-    const auto number = [cell](float x) {
-        return int(std::clamp(std::floor(double(x) / cell), -double(1 << 30), double(1 << 30)));
-    };
-    for (const Vec3f& p : sites.point) places.push_back({number(p.x), number(p.y), number(p.z)});
+    for (const Vec3f& p : sites.point) places.push_back(cellOf(p, cell));
     return places;
 }
 

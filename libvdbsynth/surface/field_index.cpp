@@ -1,6 +1,7 @@
 #include "libvdbsynth/surface/field_index.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/math/smallest_rotation.h"
 #include "libvdbsynth/math/trigonometry.h"
 
 #include <algorithm>
@@ -8,13 +9,6 @@
 
 namespace vdbsynth {
 namespace {
-
-// The vector after the smallest rotation that takes one unit normal to another [moller1999].
-Vec3d carried(const Vec3d& vector, const Vec3d& from, const Vec3d& to) {
-    const Vec3d axis = cross(from, to);
-    const double cosine = std::max(dot(from, to), -0.999999);
-    return vector * cosine + cross(axis, vector) + axis * (dot(axis, vector) / (1 + cosine));
-}
 
 double principal(double angle) {
     return angle - 2 * kPi * std::round(angle / (2 * kPi));

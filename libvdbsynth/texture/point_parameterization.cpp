@@ -177,8 +177,8 @@ void requireAtLeast0(double value, const char* field) {
     requireOption(std::isfinite(value) && value >= 0, field, exactText(value), "a number of at least 0");
 }
 
-bool mixesByHistogram(PointBlend blend, const SampleImage& sample, const RunContext& ctx) {
-    if (blend != PointBlend::Automatic) return blend == PointBlend::Histogram;
+bool mixesByHistogram(SampleBlend blend, const SampleImage& sample, const RunContext& ctx) {
+    if (blend != SampleBlend::Automatic) return blend == SampleBlend::Histogram;
     const double loss = blendLoss(sample, ctx);
     const bool suits = loss <= kBlendSuits;
     message(ctx, MessageLevel::Detail,
@@ -197,6 +197,8 @@ void validate(const PointParameterizationOptions& options) {
                   "a number above 0");
     requireOption(options.patchSize > 0 && options.patchSize <= 1, "patchSize", exactText(options.patchSize),
                   "above 0 and at most 1");
+    requireOption(options.blend != SampleBlend::Off, "blend", "off",
+                  "automatic, by weight or by histogram: gaps have to be mixed");
     requireAtLeast0(options.distortion.w1, "w1");
     requireAtLeast0(options.distortion.w2, "w2");
     requireAtLeast0(options.distortion.w3, "w3");

@@ -6,13 +6,6 @@
 
 namespace vdbsynth {
 
-/// How gap points mix what the patches around them say.
-enum class PointBlend {
-    Automatic,  ///< Histogram where the sample is stochastic: blendLoss at most kBlendSuits
-    Alpha,      ///< mean by weight [zhang2004, 3.4], which loses contrast
-    Histogram   ///< keeps the sample's histogram (histogram_blend.h)
-};
-
 struct PointParameterizationOptions {
     int neighbours = 25;  ///< k, 3..256
     double scale = 1;     ///< above 0: side of a texel in spacings; 2 makes the texture twice as large
@@ -20,7 +13,7 @@ struct PointParameterizationOptions {
     PointOrientationOptions orientation;  ///< of every patch's seed
     /// Largest size of a patch, as a share of each side of a sample that is not tileable, above 0, at most 1.
     double patchSize = 0.9;
-    PointBlend blend = PointBlend::Automatic;
+    SampleBlend blend = SampleBlend::Automatic;  ///< of what patches say to gap points; not Off
 };
 
 /// @throw Error InvalidOption (a field out of its range)

@@ -159,8 +159,8 @@ TexturedSites spreadOut(const TexturedSites& placed, const std::vector<std::uint
     return out;
 }
 
-bool mixesSeams(const std::vector<SampleImage>& samples, SeamBlend blend, const RunContext& ctx) {
-    if (blend != SeamBlend::Automatic) return blend == SeamBlend::Histogram;
+bool mixesSeams(const std::vector<SampleImage>& samples, SampleBlend blend, const RunContext& ctx) {
+    if (blend != SampleBlend::Automatic) return blend == SampleBlend::Histogram;
     bool suits = true;
     for (const SampleImage& sample : samples) {
         const double loss = blendLoss(sample, ctx);
@@ -182,6 +182,8 @@ void requireOptions(const SurfaceTextureOptions& options) {
         throw Error(ErrorCode::InvalidOption, "`scale`: is not above 0");
     if (!(options.regionBlend >= 0 && options.regionBlend <= kWidestRegionBlend))
         throw Error(ErrorCode::InvalidOption, "`regionBlend`: is not from 0 to 1000 (texels)");
+    if (options.blend == SampleBlend::Weight)
+        throw Error(ErrorCode::InvalidOption, "`blend`: by weight is of the parameterization only");
     validate(options.synthesis);
 }
 
@@ -240,7 +242,8 @@ SurfaceTextureResult textureSurface(const TextureTarget& target, const std::vect
         sites.tangent = targetTangents(sites.sites, whole.target.direction, unit, &result.singularities, ctx);
         sites.label = std::move(whole.target.label);
         CoordinateOptions synthesis = options.synthesis;
-        if (anyGiven(whole.target.direction)) synthesis.turn = std::min(synthesis.turn, kGivenTurn);
+        if (anyGiven(whole.target.direction))
+            synthesis.maxRotation = std::min(synthesis.maxRotation, kGivenRotation);
         const std::vector<std::int32_t> label = sites.label;
         const CoordinateResult coordinates =
             synthesizeCoordinates(sites, samples, result.texel, synthesis, ctx);

@@ -19,13 +19,6 @@ struct TextureTarget {
 /// normal that is not finite, a normal of length 0)
 void requireTarget(const TextureTarget& target);
 
-/// Whether colours are mixed where charts meet.
-enum class SeamBlend {
-    Automatic,  ///< where the samples are stochastic: blendLoss at most kBlendSuits (histogram_blend.h)
-    Off,        ///< never: every colour is one of the sample's
-    Histogram   ///< always
-};
-
 /// Sites as sparse as the texels take a texel each; where a texel is over so many spacings wide, samples are
 /// read between texels (readCubic).
 inline constexpr double kMagnified = 1.5;
@@ -36,15 +29,15 @@ struct SurfaceTextureOptions {
     double texel = 0;  ///< [world] side of a texel on the surface, above 0; 0: the mean distance of a point
                        ///< to its nearest, times `scale`
     double scale = 1;  ///< above 0: 2 makes the texture twice as large
-    /// Its `turn` is for targets without directions; where any are given, charts turn at most kGivenTurn from
-    /// them.
+    /// Its `maxRotation` is for targets without directions; where any are given, charts are rotated at most
+    /// kGivenRotation from them.
     CoordinateOptions synthesis;
-    SeamBlend blend = SeamBlend::Automatic;  ///< seam_blend.h
+    SampleBlend blend = SampleBlend::Automatic;  ///< where charts meet (seam_blend.h); not Weight
     double regionBlend = 0;  ///< [texels] 0..1000: how far from borders between labels colours cross-fade
                              ///< (region_blend.h); 0: not at all
 };
 
-inline constexpr double kGivenTurn = 8;  ///< [degrees]
+inline constexpr double kGivenRotation = 8;  ///< [degrees]
 
 struct SurfaceTextureResult {
     TexturedSites sites;                       ///< one per point of the target

@@ -7,6 +7,15 @@
 
 namespace vdbsynth {
 
+/// How colours are mixed where pieces of a sample meet.
+enum class SampleBlend {
+    Automatic,  ///< Histogram where the sample is stochastic (blendLoss in histogram_blend.h at most
+                ///< kBlendSuits); else Off, or Weight where something has to be mixed
+    Off,        ///< not at all: every colour is one of the sample's
+    Weight,     ///< mean by weight [zhang2004, 3.4], which loses contrast
+    Histogram   ///< keeps the sample's histogram (histogram_blend.h)
+};
+
 /// What texturing gives every site of a surface. The coordinates are the result; the values follow from them
 /// but where they are blended.
 struct TexturedSites {

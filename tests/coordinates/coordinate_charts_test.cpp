@@ -1,31 +1,16 @@
 #include "libvdbsynth/coordinates/coordinate_charts.h"
 
 #include "tests/support/contexts.h"
-#include "tests/support/point_shapes.h"
-#include "tests/support/sample_images.h"
+#include "tests/support/coordinate_levels.h"
 
 #include <catch2/catch.hpp>
 
 using namespace vdbsynth;
 
-namespace {
-
-CoordinateLevel planeLevel(int side, SampleImage sample, bool tileable) {
-    const test::PointShape plane = test::latticePlane(side);
-    sample.tileable = tileable;
-    CoordinateLevel level;
-    level.sites = sitesOfPoints(plane.point, plane.normal, 8);
-    level.tangent.assign(level.sites.size(), {1, 0, 0});
-    level.field = level.tangent;
-    level.label.assign(level.sites.size(), 0);
-    level.samples.push_back(sampleLevel(sample, 1, 0));
-    return level;
-}
-
-}  // namespace
-
 TEST_CASE("layCharts: a tileable sample covers a plane in one piece") {
-    CoordinateLevel level = planeLevel(50, test::noiseSample(32, 32), true);
+    SampleImage tile = test::noiseSample(32, 32);
+    tile.tileable = true;
+    CoordinateLevel level = test::planeLevel(50, tile, 0);
     layCharts(level, 0);
     const Vec2f origin = level.coordinate[0];
     for (std::size_t i = 0; i < level.sites.size(); ++i) {
@@ -35,14 +20,14 @@ TEST_CASE("layCharts: a tileable sample covers a plane in one piece") {
 }
 
 TEST_CASE("layCharts: of a sample that ends, every site gets a source, most continue a neighbour") {
-    CoordinateLevel level = planeLevel(60, test::noiseSample(32, 32), false);
+    CoordinateLevel level = test::planeLevel(60, test::noiseSample(32, 32), 0);
     layCharts(level, 0);
     for (const Vec2f& u : level.coordinate) REQUIRE(level.samples[0].isSource(u));
     CHECK(levelStats(level).coherent > 0.95);
 }
 
 TEST_CASE("layCharts: sites without neighbours, cancel") {
-    CoordinateLevel level = planeLevel(1, test::noiseSample(8, 8), false);
+    CoordinateLevel level = test::planeLevel(1, test::noiseSample(8, 8), 0);
     layCharts(level, 0);
     CHECK(level.samples[0].isSource(level.coordinate[0]));
     const auto thrown = test::thrownWhenCancelled([&](const RunContext& ctx) { layCharts(level, 0, ctx); });

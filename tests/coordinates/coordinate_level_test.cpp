@@ -1,27 +1,11 @@
 #include "libvdbsynth/coordinates/coordinate_level.h"
 
 #include "tests/support/contexts.h"
-#include "tests/support/point_shapes.h"
-#include "tests/support/sample_images.h"
+#include "tests/support/coordinate_levels.h"
 
 #include <catch2/catch.hpp>
 
 using namespace vdbsynth;
-
-namespace {
-
-CoordinateLevel planeLevel(int side, const SampleImage& sample) {
-    const test::PointShape plane = test::latticePlane(side);
-    CoordinateLevel level;
-    level.sites = sitesOfPoints(plane.point, plane.normal, 8);
-    level.tangent.assign(level.sites.size(), {1, 0, 0});
-    level.field = level.tangent;
-    level.label.assign(level.sites.size(), 0);
-    level.samples.push_back(sampleLevel(sample, 1, 2));
-    return level;
-}
-
-}  // namespace
 
 TEST_CASE("siteClasses: no two neighbours share a class") {
     for (const test::PointShape& shape : {test::latticePlane(30), test::randomPlane(2000, 30)}) {
@@ -36,8 +20,7 @@ TEST_CASE("siteClasses: no two neighbours share a class") {
 }
 
 TEST_CASE("correctCoordinates: a rigid copy of the sample stays as it is") {
-    CoordinateLevel level = planeLevel(40, test::noiseSample(64, 64));
-    for (const Vec3f& p : level.sites.point) level.coordinate.push_back({p.x + 10.5f, p.y + 12.5f});
+    CoordinateLevel level = test::copiedPlane(40, test::noiseSample(64, 64));
     const std::vector<Vec2f> before = level.coordinate;
     CoordinateOptions options;
     correctCoordinates(level, 2, options);
@@ -53,8 +36,7 @@ TEST_CASE("correctCoordinates: a rigid copy of the sample stays as it is") {
 }
 
 TEST_CASE("correctCoordinates: a wrong site among right ones is put right") {
-    CoordinateLevel level = planeLevel(40, test::noiseSample(64, 64));
-    for (const Vec3f& p : level.sites.point) level.coordinate.push_back({p.x + 10.5f, p.y + 12.5f});
+    CoordinateLevel level = test::copiedPlane(40, test::noiseSample(64, 64));
     const std::size_t wrong = 20 * 40 + 20;
     const Vec2f right = level.coordinate[wrong];
     level.coordinate[wrong] = {40, 15};
@@ -63,7 +45,7 @@ TEST_CASE("correctCoordinates: a wrong site among right ones is put right") {
 }
 
 TEST_CASE("correctCoordinates: from random coordinates costs fall") {
-    CoordinateLevel level = planeLevel(50, test::stripesSample(64, 4));
+    CoordinateLevel level = test::planeLevel(50, test::stripesSample(64, 4));
     for (std::size_t i = 0; i < level.sites.size(); ++i)
         level.coordinate.push_back(randomSource(level.samples[0], 7, i, 0));
     const double before = levelStats(level).cost;
@@ -73,7 +55,7 @@ TEST_CASE("correctCoordinates: from random coordinates costs fall") {
 }
 
 TEST_CASE("correctCoordinates: same bits for any number of threads, cancel") {
-    CoordinateLevel one = planeLevel(50, test::stripesSample(64, 4));
+    CoordinateLevel one = test::planeLevel(50, test::stripesSample(64, 4));
     for (std::size_t i = 0; i < one.sites.size(); ++i)
         one.coordinate.push_back(randomSource(one.samples[0], 7, i, 0));
     CoordinateLevel four = one, stopped = one;

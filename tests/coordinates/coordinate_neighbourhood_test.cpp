@@ -1,30 +1,13 @@
 #include "libvdbsynth/coordinates/coordinate_neighbourhood.h"
 
-#include "tests/support/point_shapes.h"
-#include "tests/support/sample_images.h"
+#include "tests/support/coordinate_levels.h"
 
 #include <catch2/catch.hpp>
 
 using namespace vdbsynth;
 
-namespace {
-
-CoordinateLevel copiedPlane() {
-    const test::PointShape plane = test::latticePlane(20);
-    CoordinateLevel level;
-    level.sites = sitesOfPoints(plane.point, plane.normal, 8);
-    level.tangent.assign(level.sites.size(), {1, 0, 0});
-    level.field = level.tangent;
-    level.label.assign(level.sites.size(), 0);
-    level.samples.push_back(sampleLevel(test::noiseSample(64, 64), 1, 2));
-    for (const Vec3f& p : level.sites.point) level.coordinate.push_back({p.x + 10.5f, p.y + 12.5f});
-    return level;
-}
-
-}  // namespace
-
 TEST_CASE("Neighbourhood: in a rigid copy every neighbour continues to the site's own coordinate") {
-    const CoordinateLevel level = copiedPlane();
+    const CoordinateLevel level = test::copiedPlane(20, test::noiseSample(64, 64));
     const std::size_t site = 10 * 20 + 10;
     const Neighbourhood near(level, site);
     REQUIRE(near.count() == 8);
@@ -44,8 +27,8 @@ TEST_CASE("Neighbourhood: in a rigid copy every neighbour continues to the site'
     CHECK(near.nearestNode(wanted.data()) == 22 * 64 + 20);
 }
 
-TEST_CASE("Neighbourhood: a neighbour whose frame is turned continues along its own axes") {
-    CoordinateLevel level = copiedPlane();
+TEST_CASE("Neighbourhood: a neighbour whose frame is rotated continues along its own axes") {
+    CoordinateLevel level = test::copiedPlane(20, test::noiseSample(64, 64));
     const std::size_t site = 10 * 20 + 10, left = site - 1;
     level.tangent[left] = {0, 1, 0};  // its u runs along the world's y, its v along -x
     const Neighbourhood near(level, site);
@@ -59,7 +42,7 @@ TEST_CASE("Neighbourhood: a neighbour whose frame is turned continues along its 
 }
 
 TEST_CASE("Neighbourhood: sites of other samples, and those left out, do not count") {
-    CoordinateLevel level = copiedPlane();
+    CoordinateLevel level = test::copiedPlane(20, test::noiseSample(64, 64));
     level.samples.push_back(level.samples[0]);
     const std::size_t site = 10 * 20 + 10;
     level.label[site + 1] = 1;

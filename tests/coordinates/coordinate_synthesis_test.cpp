@@ -104,11 +104,11 @@ TEST_CASE("synthesizeCoordinates: same bits for any number of threads, other coo
     CHECK(differs > 3000);
 }
 
-TEST_CASE("synthesizeCoordinates: charts turn no farther from the tangents than they may") {
+TEST_CASE("synthesizeCoordinates: charts are rotated from the tangents no farther than allowed") {
     const CoordinateSites sites = sitesOf(test::spiralSphere(8000, 20), {0, 0, 1});
-    for (double turn : {0.0, 10.0, 60.0}) {
+    for (double degrees : {0.0, 10.0, 60.0}) {
         CoordinateOptions options;
-        options.turn = turn;
+        options.maxRotation = degrees;
         const CoordinateResult result =
             synthesizeCoordinates(sites, {test::noiseSample(64, 64)}, 0.7, options);
         double most = 1;
@@ -117,7 +117,7 @@ TEST_CASE("synthesizeCoordinates: charts turn no farther from the tangents than 
             REQUIRE(std::abs(dot(result.tangent[i], sites.sites.normal[i])) < 1e-3f);
             REQUIRE(length(result.tangent[i]) == Approx(1).margin(1e-4));
         }
-        CHECK(most >= std::cos(turn * 3.14159265 / 180) - 1e-3);
+        CHECK(most >= std::cos(degrees * 3.14159265 / 180) - 1e-3);
     }
 }
 
@@ -158,7 +158,7 @@ TEST_CASE("synthesizeCoordinates: every refusal") {
     CoordinateOptions options;
     options.passes = 21;
     CHECK(code(sites, {noise}, 1, options) == int(ErrorCode::InvalidOption));
-    for (double CoordinateOptions::*field : {&CoordinateOptions::turn, &CoordinateOptions::coherence,
+    for (double CoordinateOptions::*field : {&CoordinateOptions::maxRotation, &CoordinateOptions::coherence,
                                              &CoordinateOptions::uniformity, &CoordinateOptions::histogram}) {
         options = {};
         options.*field = -1;

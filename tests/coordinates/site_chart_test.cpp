@@ -17,28 +17,17 @@ TEST_CASE("flattened: in the plane as it is, out of it at full length, along the
     CHECK(length(flattened(frame, {0, 0, 0})) == 0);
 }
 
-TEST_CASE("turnBetween: takes a direction's coordinates in one frame to those in another") {
+TEST_CASE("frameRotation: takes a direction's coordinates in one frame to those in another") {
     const SiteFrame from = siteFrame({0, 0, 1}, {1, 0, 0});
     const SiteFrame to = siteFrame({0, 0, 1}, {0, 1, 0});
-    const Vec2f turn = turnBetween(from, to);
+    const Vec2f rotation = frameRotation(from, to);
     // The world's x is u of the first; in the second it is -v.
-    const Vec2f x = turned({1, 0}, turn);
+    const Vec2f x = rotated({1, 0}, rotation);
     CHECK(x.x == Approx(0).margin(1e-6));
     CHECK(x.y == Approx(-1));
-    const Vec2f same = turnBetween(to, to);
+    const Vec2f same = frameRotation(to, to);
     CHECK(same.x == Approx(1));
     CHECK(same.y == Approx(0).margin(1e-6));
-}
-
-TEST_CASE("carried: the smallest rotation between normals, which keeps length and the axis") {
-    const Vec3f turned = carried({1, 0, 0}, {0, 0, 1}, {1, 0, 0});  // about y, x goes to -z
-    CHECK(turned.x == Approx(0).margin(1e-6));
-    CHECK(turned.z == Approx(-1));
-    const Vec3f axis = carried({0, 1, 0}, {0, 0, 1}, normalized(Vec3f{1, 0, 1}));
-    CHECK(axis.y == Approx(1));
-    const Vec3f same = carried({0.6f, 0.8f, 0}, {0, 0, 1}, {0, 0, 1});
-    CHECK(same.x == Approx(0.6));
-    CHECK(length(carried({1, 0, 0}, {0, 0, 1}, normalized(Vec3f{1, 2, 3}))) == Approx(1));
 }
 
 TEST_CASE("tangentNear: perpendicular to the normal, also for directions along it") {

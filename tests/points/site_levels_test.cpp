@@ -8,6 +8,15 @@
 
 using namespace vdbsynth;
 
+TEST_CASE("cellOf: floors, also below zero, and holds far outliers") {
+    const Index3 cell = cellOf({2.5f, -0.1f, 4}, 2);
+    CHECK(cell.x == 1);
+    CHECK(cell.y == -1);
+    CHECK(cell.z == 2);
+    CHECK(cellOf({1e30f, -1e30f, 0}, 1e-6).x == 1 << 30);
+    CHECK(cellOf({1e30f, -1e30f, 0}, 1e-6).y == -(1 << 30));
+}
+
 TEST_CASE("mergedByCells: a lattice of 4 x 4 becomes its 2 x 2 means") {
     const test::PointShape shape = test::latticePlane(4);
     const CoarserSites coarser = mergedByCells(shape.point, shape.normal, 2);

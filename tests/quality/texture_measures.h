@@ -4,7 +4,7 @@
 
 namespace vdbsynth::test {
 
-/// A picture as a sample, its rows turned, its values over its white.
+/// A picture as a sample, its rows from the bottom, its values over its white.
 SampleImage sampleOf(const Raster& raster);
 
 /// Each number is a ratio to the sample itself.

@@ -10,6 +10,7 @@
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/point_file.h"
 #include "libvdbsynth/io/raster_file.h"
+#include "libvdbsynth/texture/histogram_blend.h"
 #include "libvdbsynth/texture/point_hybrid.h"
 #include "libvdbsynth/texture/point_matching.h"
 #include "libvdbsynth/texture/point_parameterization.h"
@@ -87,7 +88,7 @@ Made make(const Arguments& arguments, const TextureTarget& target, const SampleI
         PointParameterizationOptions own;
         own.neighbours = arguments.neighbours;
         if (arguments.speed)
-            own.blend = PointBlend::Alpha;  // as published; Automatic measures the sample first
+            own.blend = SampleBlend::Weight;  // as published; Automatic measures the sample first
         PointParameterizationResult made = parameterizePoints(target, sample, own, ctx);
         return {std::move(made.sites), made.texel};
     }
@@ -146,9 +147,9 @@ bool readArguments(int argc, char** argv, Arguments& arguments) {
         {"--similar", [&](double v) { synthesis.similar = int(v); }},
         {"--uniformity", [&](double v) { synthesis.uniformity = v; }},
         {"--histogram", [&](double v) { synthesis.histogram = v; }},
-        {"--turn", [&](double v) { synthesis.turn = v; }},
+        {"--max-rotation", [&](double v) { synthesis.maxRotation = v; }},
         {"--blend",
-         [&](double v) { arguments.options.blend = v > 0 ? SeamBlend::Histogram : SeamBlend::Off; }},
+         [&](double v) { arguments.options.blend = v > 0 ? SampleBlend::Histogram : SampleBlend::Off; }},
     };
     for (int i = 2; i < argc; ++i) {
         const std::string word = argv[i];
@@ -193,15 +194,21 @@ int main(int argc, char** argv) {
     if (argc < 3 || !readArguments(argc, argv, arguments)) {
         std::fprintf(
             stderr,
-            "usage: texture_quality TARGET SAMPLE... [--method "
+            "usage: texture_quality TARGET|loss SAMPLE... [--method "
             "default|parameterize|match|match4|hybrid] [--speed] [--crop N] [--seed N] [--neighbours N] "
             "[--levels N] [--coherent] [--coherence X] [--passes N] [--coarse-passes N] [--similar N] "
-            "[--uniformity X] [--histogram X] [--turn DEGREES] [--blend 0|1]\n");
+            "[--uniformity X] [--histogram X] [--max-rotation DEGREES] [--blend 0|1]\n");
         return 2;
     }
     try {
         RunContext ctx;
         ctx.seed = arguments.seed;
+        if (std::string(argv[1]) == "loss") {
+            for (const std::string& path : arguments.samples)
+                std::printf("%-28s %8.3f\n", path.substr(path.rfind('/') + 1).c_str(),
+                            blendLoss(test::sampleOf(readRaster(path)), ctx));
+            return 0;
+        }
         const TextureTarget target = targetOf(argv[1]);
         std::printf("%-28s", "sample");
         if (!arguments.speed)

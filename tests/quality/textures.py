@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Measures textures on points: how good they are and how fast they are made. Prints the tables of docs/texturing.md.
 Usage: textures.py BUILD_FOLDER [--texture "OPTIONS"] [TABLE...]
-Tables: quality (the default method on every sample), methods (beside the paper's three), blend (colours mixed at seams),
+Tables: quality (the default method on every sample), methods (beside the paper's three), blend (colours mixed at seams), loss (what mixing does to each sample),
 speed (beside the paper's table 1), growth (with the number of points); default all. `check` is a short run with a sample of
 its own, which fails if a number is not finite. OPTIONS are of texture_quality, of the default method, in all tables. Samples are those of VDBSYNTH_SAMPLES, default ../shared/data."""
 import argparse
@@ -135,7 +135,14 @@ def check(program, folder):
             sys.exit("a number is missing or not finite")
 
 
-TABLES = {"quality": quality, "methods": methods, "blend": blend, "speed": speed, "growth": growth}
+def loss(program):
+    result = subprocess.run([program.program, "loss", *map(str, TEXTURES)], capture_output=True, text=True, check=True)
+    header("sample", "blendLoss")
+    for name, value in sorted((line.split() for line in result.stdout.splitlines()), key=lambda words: float(words[1])):
+        row(pathlib.Path(name).stem, f"{float(value):.2f}")
+
+
+TABLES = {"quality": quality, "methods": methods, "blend": blend, "loss": loss, "speed": speed, "growth": growth}
 
 
 def main():

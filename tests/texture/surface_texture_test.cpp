@@ -2,8 +2,8 @@
 
 #include "libvdbsynth/base/error.h"
 #include "tests/support/contexts.h"
-#include "tests/support/point_shapes.h"
 #include "tests/support/sample_images.h"
+#include "tests/texture/texture_shapes.h"
 
 #include <catch2/catch.hpp>
 
@@ -13,19 +13,11 @@
 
 using namespace vdbsynth;
 
-namespace {
-
-TextureTarget targetOf(const test::PointShape& shape) {
-    return {shape.point, shape.normal, {}, {}};
-}
-
-}  // namespace
-
 TEST_CASE("textureSurface: values are the sample's texels at the coordinates") {
     const SampleImage noise = test::noiseSample(40, 40);
-    const TextureTarget target = targetOf(test::spiralSphere(5000, 10));
+    const TextureTarget target = test::targetOf(test::spiralSphere(5000, 10));
     SurfaceTextureOptions options;
-    options.blend = SeamBlend::Off;
+    options.blend = SampleBlend::Off;
     const SurfaceTextureResult result = textureSurface(target, {noise}, options);
     CHECK(result.blended == 0);
     REQUIRE(result.sites.values.size() == 5000);
@@ -42,7 +34,7 @@ TEST_CASE("textureSurface: values are the sample's texels at the coordinates") {
 TEST_CASE(
     "textureSurface: colours are mixed where charts meet, of stochastic samples unless told otherwise") {
     const SampleImage noise = test::noiseSample(64, 64), stripes = test::stripesSample(64, 8);
-    const TextureTarget target = targetOf(test::spiralSphere(6000, 10));
+    const TextureTarget target = test::targetOf(test::spiralSphere(6000, 10));
     const SurfaceTextureResult mixed = textureSurface(target, {noise});
     CHECK(mixed.blended > 0);
     CHECK(std::size_t(std::count(mixed.sites.blended.begin(), mixed.sites.blended.end(), char(1))) ==
@@ -52,12 +44,12 @@ TEST_CASE(
             REQUIRE(mixed.sites.values[i] == nearestTexel(noise, mixed.sites.coordinate[i])[0]);
     CHECK(textureSurface(target, {stripes}).blended == 0);
     SurfaceTextureOptions always;
-    always.blend = SeamBlend::Histogram;
+    always.blend = SampleBlend::Histogram;
     CHECK(textureSurface(target, {stripes}, always).blended > 0);
 }
 
 TEST_CASE("textureSurface: given directions are the tangents") {
-    TextureTarget target = targetOf(test::latticePlane(30));
+    TextureTarget target = test::targetOf(test::latticePlane(30));
     target.direction.assign(900, {0, 1, 0});
     const SurfaceTextureResult result = textureSurface(target, {test::noiseSample(16, 16)});
     for (const Vec3f& t : result.sites.tangent) REQUIRE(t.y == Approx(1));
@@ -79,7 +71,7 @@ TEST_CASE("textureSurface: without directions the field is smooth, with few sing
 }
 
 TEST_CASE("textureSurface: points at one place that face one way get one colour, others their own") {
-    TextureTarget target = targetOf(test::latticePlane(20));
+    TextureTarget target = test::targetOf(test::latticePlane(20));
     for (int i = 0; i < 400; ++i) {
         target.point.push_back(target.point[std::size_t(i)]);
         target.normal.push_back({0, 0, i % 2 ? 1.0f : -1.0f});
@@ -94,7 +86,7 @@ TEST_CASE("textureSurface: points at one place that face one way get one colour,
 }
 
 TEST_CASE("textureSurface: scale and texel") {
-    const TextureTarget target = targetOf(test::latticePlane(40));
+    const TextureTarget target = test::targetOf(test::latticePlane(40));
     SurfaceTextureOptions options;
     options.scale = 2.5;
     CHECK(textureSurface(target, {test::noiseSample(32, 32)}, options).texel == Approx(2.5));
@@ -104,7 +96,7 @@ TEST_CASE("textureSurface: scale and texel") {
 
 TEST_CASE("textureSurface: refusals, threads, cancel") {
     const SampleImage noise = test::noiseSample(16, 16);
-    const TextureTarget target = targetOf(test::latticePlane(10));
+    const TextureTarget target = test::targetOf(test::latticePlane(10));
     const auto code = [&](const TextureTarget& t, const SurfaceTextureOptions& options = {}) {
         return test::thrownBy([&] { textureSurface(t, {noise}, options); }).code;
     };
@@ -127,7 +119,10 @@ TEST_CASE("textureSurface: refusals, threads, cancel") {
     options = {};
     options.texel = -1;
     CHECK(code(target, options) == int(ErrorCode::InvalidOption));
-    const TextureTarget ball = targetOf(test::spiralSphere(3000, 10));
+    options = {};
+    options.blend = SampleBlend::Weight;
+    CHECK(code(target, options) == int(ErrorCode::InvalidOption));
+    const TextureTarget ball = test::targetOf(test::spiralSphere(3000, 10));
     CHECK(textureSurface(ball, {noise}, {}, test::onThreads(1)).sites.values ==
           textureSurface(ball, {noise}, {}, test::onThreads(4)).sites.values);
     const auto thrown =

@@ -1,11 +1,26 @@
 #pragma once
+#include "libvdbsynth/base/error.h"
 #include "libvdbsynth/texture/surface_texture.h"
+#include "tests/support/makers.h"
 #include "tests/support/point_shapes.h"
 
+#include <catch2/catch.hpp>
+
 #include <algorithm>
+#include <string>
 
 // Targets and samples shared by the tests of this room.
 namespace vdbsynth::test {
+
+/// Checks that `call` with options that `change` spoils is refused by the name of the field.
+template <typename Options, typename Call, typename Change>
+void requireRefused(const Call& call, const char* field, const Change& change) {
+    Options options;
+    change(options);
+    const Thrown thrown = thrownBy([&] { call(options); });
+    CHECK(thrown.code == int(ErrorCode::InvalidOption));
+    CHECK(thrown.message.find(field) != std::string::npos);
+}
 
 inline TextureTarget targetOf(const PointShape& shape) {
     return {shape.point, shape.normal, {}, {}};

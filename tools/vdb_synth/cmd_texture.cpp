@@ -16,6 +16,8 @@
 namespace vdbsynth::cli {
 namespace {
 
+constexpr double kFewShown = 0.1;  // share of an image's pixels below which a note says so
+
 struct OfMethods {
     const char* option;
     std::vector<std::string> methods;
@@ -25,7 +27,7 @@ const std::vector<OfMethods> kOfMethods{{"passes", {"default"}},
                                         {"coherence", {"default"}},
                                         {"uniformity", {"default"}},
                                         {"histogram", {"default"}},
-                                        {"turn", {"default"}},
+                                        {"max-rotation", {"default"}},
                                         {"blend", {"default", "parameterize"}},
                                         {"draft", {"default"}},
                                         {"neighbours", {"parameterize", "match", "hybrid"}},
@@ -68,15 +70,15 @@ TextureOptions parseOptions(const Arguments& arguments) {
     options.synthesis.coherence = arguments.real("coherence");
     options.synthesis.uniformity = arguments.real("uniformity");
     options.synthesis.histogram = arguments.real("histogram");
-    options.synthesis.turn = arguments.real("turn");
-    if (arguments.has("turn") && arguments.has("direction"))
+    options.synthesis.maxRotation = arguments.real("max-rotation");
+    if (arguments.has("max-rotation") && arguments.has("direction"))
         throw Error(ErrorCode::InvalidOption,
-                    "--turn: has no effect with --direction, which pieces follow within 8 degrees");
+                    "--max-rotation: has no effect with --direction, which pieces follow within 8 degrees");
     const std::string blend = arguments.text("blend");
-    options.blend = blend == "off" || (arguments.has("draft") && !arguments.has("blend")) ? TextureBlend::Off
-                    : blend == "weight"    ? TextureBlend::Weight
-                    : blend == "histogram" ? TextureBlend::Histogram
-                                           : TextureBlend::Automatic;
+    options.blend = blend == "off" || (arguments.has("draft") && !arguments.has("blend")) ? SampleBlend::Off
+                    : blend == "weight"    ? SampleBlend::Weight
+                    : blend == "histogram" ? SampleBlend::Histogram
+                                           : SampleBlend::Automatic;
     validate(options);
     return options;
 }
@@ -116,7 +118,7 @@ void noteUnusedVoxels(const Run& run, const TextureShape& shape, const std::vect
     }
 }
 
-void report(Run& run, const TextureShape& shape, const TextureResult& result) {
+void report(Run& run, const TextureShape& shape, const SampleImage& image, const TextureResult& result) {
     nlohmann::json levels = nlohmann::json::array();
     for (const CoordinateLevelStats& level : result.levels)
         levels.push_back({{"sites", level.sites},
@@ -130,6 +132,14 @@ void report(Run& run, const TextureShape& shape, const TextureResult& result) {
     message(run.context, MessageLevel::Note,
             std::to_string(shape.points.size()) + (shape.triangles.empty() ? " points" : " vertices") +
                 "; a pixel of the image is " + roundedText(result.texel, 4) + " wide (world)");
+    // Shown at one pixel a point, at most.
+    const double texels = double(image.texels()), shown = double(shape.site.size()) / texels;
+    if (shown < kFewShown)
+        message(
+            run.context, MessageLevel::Note,
+            "so few points show " + roundedText(100 * shown, 2) +
+                " % of the image's pixels, a piece of it enlarged; --as levelset --resolution N makes more "
+                "points, and with a --scale below 1 pictures of .glb and --bake show more of it");
 }
 
 void texture(Run& run) {
@@ -157,7 +167,7 @@ void texture(Run& run) {
         displace(shape, result, samples, arguments.text("displace"), arguments.real("amplitude"));
     outputs.metadata = run.metadata();
     writeTextured(shape, result, samples, paths, outputs, run.outputs(), run.context);
-    report(run, shape, result);
+    report(run, shape, samples.front().image, result);
     run.finish();
 }
 

@@ -49,8 +49,9 @@ std::vector<Option> methodTable() {
             .says("preference for values that are rarer than in the image, of --method default")
             .initially("0.75")
             .takenBy(kTexture),
-        real("turn", "DEGREES", 0, 180)
-            .says("how far pieces of the image may turn from the smooth field, of --method default without "
+        real("max-rotation", "DEGREES", 0, 180)
+            .says("how far pieces of the image may be rotated from the smooth field, of --method default "
+                  "without "
                   "--direction")
             .initially("60")
             .takenBy(kTexture),

@@ -55,8 +55,7 @@ TextureResult byCoordinates(const TextureTarget& target, const std::vector<Sampl
     surface.scale = options.scale;
     surface.synthesis = options.synthesis;
     surface.synthesis.levels = options.levels;
-    if (options.blend == TextureBlend::Off) surface.blend = SeamBlend::Off;
-    if (options.blend == TextureBlend::Histogram) surface.blend = SeamBlend::Histogram;
+    surface.blend = options.blend;
     surface.regionBlend = options.regionBlend;
     SurfaceTextureResult made = textureSurface(target, images, surface, ctx);
     if (options.regionBlend > 0) noteRegionBlend(made, options.regionBlend, ctx);
@@ -68,8 +67,7 @@ TextureResult byParameterization(const TextureTarget& target, const SampleImage&
     PointParameterizationOptions own;
     own.neighbours = options.neighbours;
     own.scale = options.scale;
-    if (options.blend == TextureBlend::Weight) own.blend = PointBlend::Alpha;
-    if (options.blend == TextureBlend::Histogram) own.blend = PointBlend::Histogram;
+    own.blend = options.blend;
     PointParameterizationResult made = parameterizePoints(target, image, own, ctx);
     message(ctx, MessageLevel::Note,
             std::to_string(made.patches) + (made.patches == 1 ? " patch" : " patches") + ", " +
@@ -141,13 +139,13 @@ void validate(const TextureOptions& options) {
     requireOption(options.matchSample == 0 || options.matchSample >= kSmallestSample, "matchSample",
                   std::to_string(options.matchSample), "at least 4 (texels)");
     const TextureMethod method = options.method;
-    const TextureBlend blend = options.blend;
+    const SampleBlend blend = options.blend;
     const bool mixes = method == TextureMethod::Default || method == TextureMethod::Parameterize;
-    requireOption(blend == TextureBlend::Automatic || mixes, "blend", "given",
+    requireOption(blend == SampleBlend::Automatic || mixes, "blend", "given",
                   "left out: method " + std::string(nameOf(method)) + " mixes nothing");
-    requireOption(blend != TextureBlend::Off || method == TextureMethod::Default, "blend", "off",
+    requireOption(blend != SampleBlend::Off || method == TextureMethod::Default, "blend", "off",
                   "auto, weight or histogram: gaps between patches are mixed");
-    requireOption(blend != TextureBlend::Weight || method == TextureMethod::Parameterize, "blend", "weight",
+    requireOption(blend != SampleBlend::Weight || method == TextureMethod::Parameterize, "blend", "weight",
                   "off, auto or histogram");
     if (!options.direction) return;
     using Kind = DirectionSource::Kind;

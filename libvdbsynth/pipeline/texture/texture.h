@@ -16,22 +16,13 @@ namespace vdbsynth {
 /// How to texture: by surface coordinate synthesis, or as one of the paper's three methods [zhang2004].
 enum class TextureMethod { Default, Parameterize, Match, Hybrid };
 
-/// Whether and how colours are mixed where pieces of the sample meet.
-enum class TextureBlend {
-    Automatic,  ///< Histogram if the sample is stochastic (texture/histogram_blend.h), else Off, with
-                ///< `parameterize` Weight; `match` and `hybrid` mix nothing
-    Off,        ///< of the default method only
-    Weight,     ///< mean by weight, of `parameterize` only; loses contrast
-    Histogram   ///< keeps the sample's histogram
-};
-
 struct TextureOptions {
     TextureMethod method = TextureMethod::Default;
     double scale = 1;  ///< 0.01..100: 2 makes the texture twice as large. At 1 a texel is the mean distance
                        ///< of a site to its nearest.
-    std::optional<DirectionSource> direction;  ///< of the sample's u axis over the target; none: free
-    CoordinateOptions synthesis;               ///< of the default method
-    TextureBlend blend = TextureBlend::Automatic;
+    std::optional<DirectionSource> direction;    ///< of the sample's u axis over the target; none: free
+    CoordinateOptions synthesis;                 ///< of the default method
+    SampleBlend blend = SampleBlend::Automatic;  ///< `match` and `hybrid` mix nothing
     double regionBlend = 0;  ///< 0..1000 [texels], of the default method: how far from borders between
                              ///< regions colours cross-fade (texture/region_blend.h)
     int neighbours = 25;     ///< 4..128, of the paper's methods

@@ -56,6 +56,10 @@ Placed Neighbourhood::best(const float* feature, float jumpFactor, const SourceU
     return meanNear(choice.placed, settled) > 0 ? settled : choice.placed;
 }
 
+bool Neighbourhood::settled(Placed& mean) const {
+    return meanNear({mLevel.coordinate[mSite], mLevel.tangent[mSite]}, mean) == mCount;
+}
+
 std::size_t Neighbourhood::meanNear(const Placed& placed, Placed& mean, float steps) const {
     const float reach = steps * float(mSample.step);
     Vec2f offset;

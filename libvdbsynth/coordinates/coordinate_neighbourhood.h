@@ -46,6 +46,9 @@ public:
     /// continues several neighbours becomes their mean, so that charts do not shear.
     Placed best(const float* feature, float jumpFactor, const SourceUse& use) const;
 
+    /// True if the site continues all its neighbours. @param mean  then set to their mean
+    bool settled(Placed& mean) const;
+
     /// The mean of the continuations within some steps of a place and kSameRotation of its tangent.
     /// @return their number
     std::size_t meanNear(const Placed& placed, Placed& mean, float steps = kSame) const;

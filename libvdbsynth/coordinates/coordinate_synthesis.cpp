@@ -72,7 +72,8 @@ CoordinateLevel mergedLevel(const CoordinateLevel& fine, double cell, std::vecto
         direction[p] = direction[p] + fine.field[i];
         if (coarse.label[p] < 0) coarse.label[p] = fine.label[i];
     }
-    for (std::size_t p = 0; p < n; ++p) coarse.field.push_back(tangentNear(merged.normal[p], direction[p]));
+    coarse.field.resize(n);
+    for (std::size_t p = 0; p < n; ++p) coarse.field[p] = tangentNear(merged.normal[p], direction[p]);
     coarse.tangent = coarse.field;
     coarse.leastCosine = fine.leastCosine;
     coarse.sites = sitesOfPoints(std::move(merged.point), std::move(merged.normal), kSiteNeighbours, ctx);

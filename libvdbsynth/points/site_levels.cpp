@@ -42,13 +42,19 @@ void reorder(CoarserSites& coarser, const RunContext& ctx) {
     const std::vector<std::uint32_t> order = mortonOrder(coarser.point, ctx);
     CoarserSites sorted;
     std::vector<std::uint32_t> place(order.size());
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        sorted.point.push_back(coarser.point[order[i]]);
-        sorted.normal.push_back(coarser.normal[order[i]]);
-        place[order[i]] = std::uint32_t(i);
-    }
+    sorted.point.resize(order.size());
+    sorted.normal.resize(order.size());
+    parallelFor(ctx, order.size(), 16384, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            sorted.point[i] = coarser.point[order[i]];
+            sorted.normal[i] = coarser.normal[order[i]];
+            place[order[i]] = std::uint32_t(i);
+        }
+    });
     sorted.parent = std::move(coarser.parent);
-    for (std::uint32_t& parent : sorted.parent) parent = place[parent];
+    parallelFor(ctx, sorted.parent.size(), 16384, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) sorted.parent[i] = place[sorted.parent[i]];
+    });
     coarser = std::move(sorted);
 }
 

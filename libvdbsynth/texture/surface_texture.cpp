@@ -27,41 +27,61 @@ struct Welded {
     std::vector<std::uint32_t> place;  // [points] in the welded target
 };
 
-Welded welded(const TextureTarget& target, const RunContext& ctx) {
-    std::vector<std::uint32_t> order(target.point.size());
-    std::iota(order.begin(), order.end(), 0u);
-    const auto key = [&](std::uint32_t i) {
-        const Vec3f& p = target.point[i];
-        return std::make_tuple(p.x, p.y, p.z);
-    };
-    parallelSort(ctx, order, [&](std::uint32_t a, std::uint32_t b) {
-        return key(a) != key(b) ? key(a) < key(b) : a < b;
+// @param first  [points] the point that stands for each; places: those that stand for themselves
+Welded gathered(const TextureTarget& target, const std::vector<std::uint32_t>& places,
+                const std::vector<std::uint32_t>& first, const RunContext& ctx) {
+    Welded out;
+    TextureTarget& welded = out.target;
+    out.place.resize(target.point.size());
+    welded.point.resize(places.size());
+    welded.normal.resize(places.size());
+    if (!target.direction.empty()) welded.direction.resize(places.size());
+    if (!target.label.empty()) welded.label.resize(places.size());
+    parallelFor(ctx, places.size(), 16384, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p) {
+            const std::uint32_t i = places[p];
+            out.place[i] = std::uint32_t(p);
+            welded.point[p] = target.point[i];
+            welded.normal[p] = normalized(target.normal[i]);
+            if (!target.direction.empty()) welded.direction[p] = target.direction[i];
+            if (!target.label.empty()) welded.label[p] = target.label[i];
+        }
     });
+    // One that stands for others has its place from above, so that writing it again changes nothing.
+    for (std::uint32_t i = 0; i < first.size(); ++i) out.place[i] = out.place[first[i]];
+    return out;
+}
+
+struct Numbered {
+    Vec3f point;
+    std::uint32_t number = 0;
+};
+
+Welded welded(const TextureTarget& target, const RunContext& ctx) {
+    // Copies, as sorting numbers would fetch each point from anywhere in memory.
+    std::vector<Numbered> order(target.point.size());
+    for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = {target.point[i], i};
+    parallelSort(ctx, order, [](const Numbered& a, const Numbered& b) {
+        return std::tie(a.point.x, a.point.y, a.point.z, a.number) <
+               std::tie(b.point.x, b.point.y, b.point.z, b.number);
+    });
+    const auto key = [](const Numbered& a) { return std::tie(a.point.x, a.point.y, a.point.z); };
     std::vector<std::uint32_t> first(target.point.size());
     std::vector<std::uint32_t> kept;  // at one place: they face different ways, so they are few
     for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
         kept.clear();
         for (end = begin; end < order.size() && key(order[end]) == key(order[begin]); ++end) {
             const auto same = std::find_if(kept.begin(), kept.end(), [&](std::uint32_t k) {
-                return dot(target.normal[k], target.normal[order[end]]) > 0;
+                return dot(target.normal[k], target.normal[order[end].number]) > 0;
             });
-            first[order[end]] = same == kept.end() ? order[end] : *same;
-            if (same == kept.end()) kept.push_back(order[end]);
+            first[order[end].number] = same == kept.end() ? order[end].number : *same;
+            if (same == kept.end()) kept.push_back(order[end].number);
         }
     }
-    Welded out;
-    out.place.resize(target.point.size());
-    // In Morton order, which keeps neighbours near in memory.
-    for (std::uint32_t i : mortonOrder(target.point, ctx)) {
-        if (first[i] != i) continue;
-        out.place[i] = std::uint32_t(out.target.point.size());
-        out.target.point.push_back(target.point[i]);
-        out.target.normal.push_back(normalized(target.normal[i]));
-        if (!target.direction.empty()) out.target.direction.push_back(target.direction[i]);
-        if (!target.label.empty()) out.target.label.push_back(target.label[i]);
-    }
-    for (std::uint32_t i = 0; i < first.size(); ++i) out.place[i] = out.place[first[i]];
-    return out;
+    std::vector<std::uint32_t> places = mortonOrder(target.point, ctx);  // neighbours near in memory
+    places.erase(std::remove_if(places.begin(), places.end(), [&](std::uint32_t i) { return first[i] != i; }),
+                 places.end());
+    return gathered(target, places, first, ctx);
 }
 
 // The longest side of the points' box, which directions follow where none matters.
@@ -145,17 +165,23 @@ TexturedSites placedSites(const CoordinateSites& sites, const CoordinateResult& 
 
 // One for each point from one for each place.
 TexturedSites spreadOut(const TexturedSites& placed, const std::vector<std::uint32_t>& place,
-                        std::size_t channels) {
+                        std::size_t channels, const RunContext& ctx) {
     TexturedSites out;
-    out.values.reserve(place.size() * channels);
-    for (std::uint32_t p : place) {
-        out.sample.push_back(placed.sample[p]);
-        out.coordinate.push_back(placed.coordinate[p]);
-        out.tangent.push_back(placed.tangent[p]);
-        out.blended.push_back(placed.blended[p]);
-        out.values.insert(out.values.end(), placed.values.begin() + std::ptrdiff_t(p * channels),
-                          placed.values.begin() + std::ptrdiff_t((p + 1) * channels));
-    }
+    out.values.resize(place.size() * channels);
+    out.sample.resize(place.size());
+    out.coordinate.resize(place.size());
+    out.tangent.resize(place.size());
+    out.blended.resize(place.size());
+    parallelFor(ctx, place.size(), 16384, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t p = place[i];
+            out.sample[i] = placed.sample[p];
+            out.coordinate[i] = placed.coordinate[p];
+            out.tangent[i] = placed.tangent[p];
+            out.blended[i] = placed.blended[p];
+            std::copy_n(placed.values.data() + p * channels, channels, out.values.data() + i * channels);
+        }
+    });
     return out;
 }
 
@@ -258,7 +284,7 @@ SurfaceTextureResult textureSurface(const TextureTarget& target, const std::vect
             result.regionBlended =
                 blendRegions(sites, coordinates, samples, result.texel, options.regionBlend, dense,
                              placed.values, placed.blended, ctx);
-        result.sites = spreadOut(placed, whole.place, std::size_t(samples[0].channels));
+        result.sites = spreadOut(placed, whole.place, std::size_t(samples[0].channels), ctx);
         return result;
     });
 }

@@ -1,8 +1,9 @@
 // How good textures over points are and how fast they are made, in numbers: a line a sample.
-//   texture_quality TARGET SAMPLE... [--method NAME] [--seed N] [--speed] [--crop N] ...
+//   texture_quality TARGET SAMPLE... [--method NAME] [--seed N] [--speed] [--angles] [--crop N] ...
 // TARGET: plane:SIDE, random:SIDE, sphere:POINTS, or a file of points or a mesh, whose vertices count.
-// --speed measures time only, --crop takes the sample's lower left N x N texels. tests/quality/textures.py
-// runs it for the tables of docs/texturing.md.
+// --angles measures how far charts are rotated from directions along z, --speed measures time only, --crop
+// takes the sample's lower left N x N texels. tests/quality/textures.py runs it for the tables of
+// docs/texturing.md.
 #include "tests/quality/texture_measures.h"
 
 #include "libvdbsynth/base/error.h"
@@ -10,6 +11,7 @@
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/point_file.h"
 #include "libvdbsynth/io/raster_file.h"
+#include "libvdbsynth/math/trigonometry.h"
 #include "libvdbsynth/texture/histogram_blend.h"
 #include "libvdbsynth/texture/point_hybrid.h"
 #include "libvdbsynth/texture/point_matching.h"
@@ -19,6 +21,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -72,7 +75,7 @@ struct Arguments {
     std::string method = "default";
     SurfaceTextureOptions options;
     int neighbours = 25, levels = 1, crop = 0;  // of the paper's methods, but `crop`
-    bool coherent = false, speed = false;
+    bool coherent = false, speed = false, angles = false;
     std::uint64_t seed = 0;
 };
 
@@ -156,6 +159,8 @@ bool readArguments(int argc, char** argv, Arguments& arguments) {
         const auto number = numbers.find(word);
         if (word == "--speed")
             arguments.speed = true;
+        else if (word == "--angles")
+            arguments.angles = true;
         else if (word == "--coherent")
             arguments.coherent = true;
         else if (word == "--method" && i + 1 < argc)
@@ -168,6 +173,35 @@ bool readArguments(int argc, char** argv, Arguments& arguments) {
             arguments.samples.push_back(word);
     }
     return !arguments.samples.empty();
+}
+
+constexpr double kPatchRadius = 16;  // [texels] half a window of 32
+constexpr float kSteers = 0.82f;     // cosine of 35 degrees
+
+// How far charts are rotated from directions along z. Left out are sites within kPatchRadius of a
+// singularity, and where the direction is over 35 degrees off the surface, so that no field follows it
+// (surface/direction_field.h).
+void measureAngles(const std::string& path, const Arguments& arguments, TextureTarget target,
+                   const RunContext& ctx) {
+    const SampleImage sample = cropped(test::sampleOf(readRaster(path)), arguments.crop);
+    target.direction.assign(target.point.size(), {0, 0, 1});
+    const SurfaceTextureResult made = textureSurface(target, {sample}, arguments.options, ctx);
+    const float far = float(kPatchRadius * made.texel);
+    std::vector<double> angles;
+    for (std::size_t i = 0; i < target.point.size(); ++i) {
+        const Vec3f n = normalized(target.normal[i]), wanted = Vec3f{0, 0, 1} - n * n.z;
+        bool counts = length(wanted) > kSteers;
+        for (const Vec3f& s : made.singularities) counts = counts && length(s - target.point[i]) > far;
+        if (!counts) continue;
+        const double c = double(dot(made.sites.tangent[i], normalized(wanted)));
+        angles.push_back(std::acos(std::clamp(c, -1.0, 1.0)) * 180 / kPi);
+    }
+    std::sort(angles.begin(), angles.end());
+    const auto at = [&](double share) {
+        return angles.empty() ? 0 : angles[std::size_t(share * double(angles.size() - 1))];
+    };
+    std::printf("%-28s %8.3f %8.2f %8.2f %8.2f\n", path.substr(path.rfind('/') + 1).c_str(),
+                double(angles.size()) / double(target.point.size()), at(0.5), at(0.99), at(1));
 }
 
 void measure(const std::string& path, const Arguments& arguments, const TextureTarget& target,
@@ -195,7 +229,8 @@ int main(int argc, char** argv) {
         std::fprintf(
             stderr,
             "usage: texture_quality TARGET|loss SAMPLE... [--method "
-            "default|parameterize|match|match4|hybrid] [--speed] [--crop N] [--seed N] [--neighbours N] "
+            "default|parameterize|match|match4|hybrid] [--speed] [--angles] [--crop N] [--seed N] "
+            "[--neighbours N] "
             "[--levels N] [--coherent] [--coherence X] [--passes N] [--coarse-passes N] [--similar N] "
             "[--uniformity X] [--histogram X] [--max-rotation DEGREES] [--blend 0|1]\n");
         return 2;
@@ -210,6 +245,11 @@ int main(int argc, char** argv) {
             return 0;
         }
         const TextureTarget target = targetOf(argv[1]);
+        if (arguments.angles) {
+            std::printf("%-28s %8s %8s %8s %8s\n", "sample", "counted", "median", "99 %", "largest");
+            for (const std::string& path : arguments.samples) measureAngles(path, arguments, target, ctx);
+            return 0;
+        }
         std::printf("%-28s", "sample");
         if (!arguments.speed)
             std::printf(" %8s %8s %8s %8s %8s %8s", "W1", "steps", "seams", "patches", "wide", "coherent");

@@ -2,7 +2,7 @@
 """Measures textures on points: how good they are and how fast they are made. Prints the tables of docs/texturing.md.
 Usage: textures.py BUILD_FOLDER [--texture "OPTIONS"] [TABLE...]
 Tables: quality (the default method on every sample), methods (beside the paper's three), blend (colours mixed at seams), loss (what mixing does to each sample),
-speed (beside the paper's table 1), growth (with the number of points); default all. `check` is a short run with a sample of
+angles (of charts to given directions), speed (beside the paper's table 1), growth (with the number of points); default all. `check` is a short run with a sample of
 its own, which fails if a number is not finite. OPTIONS are of texture_quality, of the default method, in all tables. Samples are those of VDBSYNTH_SAMPLES, default ../shared/data."""
 import argparse
 import math
@@ -117,10 +117,18 @@ def rounded_count(target):
     return target.split(":")[1] if ":" in target else "34835"
 
 
+def angles(program):
+    header("target", "sample", "counted", "median", "99 %", "largest")
+    for target in (BUNNY, str(SAMPLES / "meshes" / "3holes.off"), "sphere:56194"):
+        for texture in FEW:
+            numbers = program.lines(target, [texture], "--angles")[0][1]
+            row(short(target), texture.stem, *(f"{v:.2f}" for v in numbers))
+
+
 def growth(program):
     sample = SAMPLES / "textures" / "vistex-Flowers-00.png"
     header("points", "default: points/s", "by a core", "parameterize: points/s", "by a core")
-    for count in (10_000, 100_000, 1_000_000):
+    for count in (10_000, 100_000, 1_000_000, 10_000_000):
         speeds = [program.speed(f"sphere:{count}", sample, "--method", m) for m in ("default", "parameterize")]
         row(count, *(rounded(v) for pair in speeds for v in pair))
 
@@ -142,7 +150,7 @@ def loss(program):
         row(pathlib.Path(name).stem, f"{float(value):.2f}")
 
 
-TABLES = {"quality": quality, "methods": methods, "blend": blend, "loss": loss, "speed": speed, "growth": growth}
+TABLES = {"quality": quality, "methods": methods, "blend": blend, "loss": loss, "angles": angles, "speed": speed, "growth": growth}
 
 
 def main():

@@ -165,11 +165,22 @@ CoordinateLevelStats levelStats(const CoordinateLevel& level, const RunContext& 
 }
 
 Vec2f randomSource(const SampleLevel& sample, std::uint64_t seed, std::uint64_t site, std::uint32_t level) {
+    constexpr int kDraws = 64;  // where masks leave little
     Random random(seed, site, 0x7e0000u + level);
     const double m = double(sample.margin);
-    const double x = random.uniform(m, double(sample.width) - m);
-    const double y = random.uniform(m, double(sample.height) - m);
-    return {float(x * sample.stride), float(y * sample.stride)};
+    Vec2f at;
+    for (int draw = 0; draw < kDraws; ++draw) {
+        const double x = random.uniform(m, double(sample.width) - m);
+        const double y = random.uniform(m, double(sample.height) - m);
+        at = {float(x * sample.stride), float(y * sample.stride)};
+        if (sample.isSource(at)) return at;
+    }
+    const std::int32_t nodes = std::int32_t(sample.width * sample.height), drawn = sample.node(at);
+    for (std::int32_t k = 1; k < nodes; ++k) {
+        const Vec2f centre = sample.centre((drawn + k) % nodes);
+        if (sample.isSource(centre)) return centre;
+    }
+    return at;
 }
 
 }  // namespace vdbsynth

@@ -30,6 +30,8 @@ void requireSites(const CoordinateSites& sites, const std::vector<SampleImage>& 
     for (const SampleImage& sample : samples) {
         if (sample.texels() == 0 || sample.channels < 1)
             throw Error(ErrorCode::EmptyInput, "a sample has no texels");
+        if (!sample.valid.empty() && sample.valid.size() != sample.texels())
+            throw Error(ErrorCode::ShapeMismatch, "a sample's mask has another size than the sample");
         if (sample.channels != samples[0].channels)
             throw Error(ErrorCode::ShapeMismatch, "samples differ in the number of channels");
     }
@@ -82,8 +84,8 @@ CoordinateLevel mergedLevel(const CoordinateLevel& fine, double cell, std::vecto
 }
 
 int sampleSide(const std::vector<SampleImage>& samples) {
-    int side = std::min(samples[0].width, samples[0].height);
-    for (const SampleImage& sample : samples) side = std::max(side, std::min(sample.width, sample.height));
+    int side = 1;
+    for (const SampleImage& sample : samples) side = std::max(side, largestSquare(sample));
     return side;
 }
 

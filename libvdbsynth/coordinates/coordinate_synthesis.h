@@ -64,8 +64,8 @@ struct CoordinateResult {
 /// within it means nothing. Sites denser than the texels continue the nearest coarser site.
 /// @param texel    [world] side of a texel on the surface, above 0
 /// @param samples  all with the same number of channels
-/// @throw Error InvalidOption, ShapeMismatch (arrays of different lengths, different channels, labels without
-/// a sample), EmptyInput (no samples, no texels), Cancelled
+/// @throw Error InvalidOption, ShapeMismatch (arrays or masks of different lengths, different channels,
+/// labels without a sample), EmptyInput (no samples, no texels), Cancelled
 /// @par Cost    O(sites log sites + texels), about 2 microseconds a site and core
 /// @par Repeats same bits for any number of threads
 CoordinateResult synthesizeCoordinates(CoordinateSites sites, const std::vector<SampleImage>& samples,

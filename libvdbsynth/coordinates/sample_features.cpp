@@ -3,7 +3,6 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/math/trigonometry.h"
-#include "libvdbsynth/search/feature_index.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,22 +11,20 @@
 namespace vdbsynth {
 namespace {
 
-constexpr int kWindow = 2;                // places on each side of the middle
-constexpr std::size_t kFitted = 4096;     // windows from which principal axes are found
-constexpr std::size_t kSearched = 16384;  // nodes whose similar nodes are searched
-constexpr double kApart = 0.05;           // share of the sample's side between similar nodes
-constexpr float kInexact = 1;             // epsilon of the search for similar nodes
+constexpr int kWindow = 2;             // places on each side of the middle
+constexpr std::size_t kFitted = 4096;  // windows from which principal axes are found
 
 // Writes a node's vector. Called from many threads.
 using VectorOf = std::function<void(std::int32_t node, float* out)>;
 
 // The `count` principal axes of the vectors of at most kFitted nodes, evenly chosen; beyond the vectors'
 // length they are zero.
-PrincipalAxes axesOf(std::size_t nodes, std::size_t length, std::size_t count, const VectorOf& vectorOf) {
-    const std::size_t fitted = std::min(nodes, kFitted);
+PrincipalAxes axesOf(const std::vector<std::int32_t>& nodes, std::size_t length, std::size_t count,
+                     const VectorOf& vectorOf) {
+    const std::size_t fitted = std::min(nodes.size(), kFitted);
     std::vector<float> some(fitted * length);
     for (std::size_t i = 0; i < fitted; ++i)
-        vectorOf(std::int32_t(i * nodes / fitted), some.data() + i * length);
+        vectorOf(nodes[i * nodes.size() / fitted], some.data() + i * length);
     PrincipalAxes axes = principalAxes(some, length, count, 2);
     axes.axes.resize(count * length, 0);
     axes.count = count;
@@ -103,106 +100,6 @@ void tapsAround(const SampleLevel& level, std::int32_t node, float* out) {
     }
 }
 
-// Distance between two nodes along the longer axis, around the border where the sample is tileable. [nodes]
-int apart(const SampleLevel& level, std::int32_t a, std::int32_t b) {
-    int dx = std::abs(a % level.width - b % level.width), dy = std::abs(a / level.width - b / level.width);
-    if (level.tileable) {
-        dx = std::min(dx, level.width - dx);
-        dy = std::min(dy, level.height - dy);
-    }
-    return std::max(dx, dy);
-}
-
-// Finds the similar nodes of every `sparse`-th node along both axes; the others take theirs from the nearest
-// of these, moved along.
-class SimilarNodes {
-public:
-    SimilarNodes(SampleLevel& level, std::size_t count) : mLevel(level), mCount(count) {
-        std::size_t nodes = std::size_t(level.width) * std::size_t(level.height);
-        while (nodes / std::size_t(mSparse * mSparse) > kSearched) ++mSparse;
-        const int longer = std::max(level.width, level.height);
-        mApart = std::max(int(kApart * double(longer)), 1 + int(level.step / double(level.stride)));
-    }
-
-    void find(const RunContext& ctx) {
-        level().similar.assign(std::size_t(mLevel.width) * std::size_t(mLevel.height) * mCount, -1);
-        std::vector<std::int32_t> nodes = sources();
-        if (nodes.size() < 2) return;
-        std::vector<float> rows;
-        for (std::int32_t node : nodes)
-            rows.insert(rows.end(), mLevel.feature.data() + std::size_t(node) * kFeature,
-                        mLevel.feature.data() + std::size_t(node + 1) * kFeature);
-        const FeatureIndex index(std::move(rows), kFeature);
-        Stage stage(ctx, "similar texels", nodes.size());
-        parallelFor(ctx, nodes.size(), 256, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) findOne(index, nodes, std::int32_t(i));
-        });
-        spreadToAll(ctx);
-    }
-
-private:
-    SampleLevel& level() { return mLevel; }
-    std::int32_t* slot(std::int32_t node) { return mLevel.similar.data() + std::size_t(node) * mCount; }
-
-    std::vector<std::int32_t> sources() const {
-        std::vector<std::int32_t> nodes;
-        for (int y = mLevel.margin; y < mLevel.height - mLevel.margin; y += mSparse)
-            for (int x = mLevel.margin; x < mLevel.width - mLevel.margin; x += mSparse)
-                nodes.push_back(std::int32_t(y) * mLevel.width + x);
-        return nodes;
-    }
-
-    void findOne(const FeatureIndex& index, const std::vector<std::int32_t>& nodes, std::int32_t i) {
-        const std::int32_t own = nodes[std::size_t(i)];
-        const auto far = [&](std::int32_t row) {
-            return apart(mLevel, own, nodes[std::size_t(row)]) >= mApart;
-        };
-        // Several times too many, of which those far from each other are kept.
-        const std::vector<FeatureMatch> matches = index.nearestSome(index.row(i), 4 * mCount, far, kInexact);
-        std::size_t found = 0;
-        for (const FeatureMatch& match : matches) {
-            const std::int32_t node = nodes[std::size_t(match.row)];
-            bool fresh = true;
-            for (std::size_t k = 0; k < found; ++k) fresh &= apart(mLevel, slot(own)[k], node) >= mApart;
-            if (fresh) slot(own)[found++] = node;
-            if (found == mCount) break;
-        }
-    }
-
-    void spreadToAll(const RunContext& ctx) {
-        if (mSparse == 1) return;
-        parallelFor(ctx, std::size_t(mLevel.height), 16, [&](std::size_t begin, std::size_t end) {
-            for (int y = int(begin); y < int(end); ++y)
-                for (int x = 0; x < mLevel.width; ++x) spreadTo(x, y);
-        });
-    }
-
-    // The searched node that shares a node's cell, along one axis.
-    int searchedBefore(int at, int size) const {
-        const int last = std::max(mLevel.margin, size - mLevel.margin - 1);
-        const int inside = std::clamp(at, mLevel.margin, last);
-        return mLevel.margin + (inside - mLevel.margin) / mSparse * mSparse;
-    }
-
-    void spreadTo(int x, int y) {
-        const int fromX = searchedBefore(x, mLevel.width), fromY = searchedBefore(y, mLevel.height);
-        if (fromX == x && fromY == y) return;
-        const std::int32_t from = std::int32_t(fromY) * mLevel.width + fromX;
-        const std::int32_t own = std::int32_t(y) * mLevel.width + x;
-        for (std::size_t k = 0; k < mCount; ++k) {
-            const std::int32_t like = slot(from)[k];
-            if (like < 0) continue;
-            const int toX = like % mLevel.width + x - fromX, toY = like / mLevel.width + y - fromY;
-            if (toX < 0 || toY < 0 || toX >= mLevel.width || toY >= mLevel.height) continue;
-            slot(own)[k] = std::int32_t(toY) * mLevel.width + toX;
-        }
-    }
-
-    SampleLevel& mLevel;
-    std::size_t mCount;
-    int mSparse = 1, mApart = 1;
-};
-
 // One pass of the smoothing, along columns or rows.
 void smoothAlong(const SampleImage& from, SampleImage& to, const std::vector<float>& kernel, bool columns,
                  const RunContext& ctx) {
@@ -250,6 +147,65 @@ SampleImage seenBy(const SampleLevel& level, const SampleImage& image, const Run
                     std::sqrt(std::max(0.0, wanted * wanted - had)), ctx);
 }
 
+// Nodes of which all texels within `reach` nodes are valid; with a reach below 0 those that have any.
+std::vector<char> usableNodes(const SampleImage& image, const SampleLevel& level, int reach) {
+    // Sums over rectangles from the lower left corner, of texels that are not valid.
+    const std::size_t columns = std::size_t(image.width) + 1;
+    std::vector<std::uint32_t> bad(columns * (std::size_t(image.height) + 1), 0);
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            const std::size_t at = (std::size_t(y) + 1) * columns + std::size_t(x) + 1;
+            bad[at] = bad[at - 1] + bad[at - columns] - bad[at - columns - 1] +
+                      (image.valid[std::size_t(y) * std::size_t(image.width) + std::size_t(x)] == 0);
+        }
+    std::vector<char> usable;
+    for (int y = 0; y < level.height; ++y)
+        for (int x = 0; x < level.width; ++x) {
+            const int around = std::max(0, reach);
+            const int lowX = std::max(0, (x - around) * level.stride),
+                      lowY = std::max(0, (y - around) * level.stride),
+                      highX = std::min(image.width, (x + around + 1) * level.stride),
+                      highY = std::min(image.height, (y + around + 1) * level.stride);
+            const auto sum = [&](int i, int j) { return bad[std::size_t(j) * columns + std::size_t(i)]; };
+            const std::uint32_t count =
+                sum(highX, highY) + sum(lowX, lowY) - sum(lowX, highY) - sum(highX, lowY);
+            usable.push_back(count <
+                             (reach < 0 ? std::uint32_t((highX - lowX) * (highY - lowY)) : std::uint32_t(1)));
+        }
+    return usable;
+}
+
+// The margin beside texels that are not valid is as wide as that at the border, less where nothing would be
+// left.
+void findUsable(const SampleImage& image, SampleLevel& level, int margin) {
+    if (image.valid.empty()) return;
+    for (int reach = margin; reach >= -1; --reach) {
+        level.usable = usableNodes(image, level, reach);
+        for (std::int32_t node = 0; node < std::int32_t(level.usable.size()); ++node)
+            if (level.isSource(level.centre(node))) return;
+    }
+    throw Error(ErrorCode::EmptyInput, "the sample has no valid texels");
+}
+
+// The nodes that appearances are described by: all, or those that are sources.
+std::vector<std::int32_t> describedBy(const SampleLevel& level) {
+    std::vector<std::int32_t> nodes;
+    for (std::int32_t node = 0; node < std::int32_t(level.width * level.height); ++node)
+        if (level.usable.empty() || level.usable[std::size_t(node)]) nodes.push_back(node);
+    return nodes;
+}
+
+// The axes are centred on the described nodes, so their mean feature is zero.
+double spreadOf(const SampleLevel& level, const std::vector<std::int32_t>& nodes) {
+    double sum = 0;
+    for (std::int32_t node : nodes)
+        for (std::size_t d = 0; d < kFeature; ++d) {
+            const float f = level.feature[std::size_t(node) * kFeature + d];
+            sum += double(f) * double(f);
+        }
+    return sum / double(nodes.size());
+}
+
 }  // namespace
 
 SampleImage smoothed(const SampleImage& image, double sigma, const RunContext& ctx) {
@@ -279,20 +235,20 @@ SampleLevel sampleLevel(const SampleImage& image, double step, std::size_t simil
     level.tileable = image.tileable;
     const int nodesInStep = int(std::ceil(step / double(level.stride)));
     if (!image.tileable) level.margin = std::min({nodesInStep, level.width / 4, level.height / 4});
+    findUsable(image, level, nodesInStep);
     const SampleImage seen = seenBy(level, image, ctx);
     level.channels = std::size_t(image.channels);
     level.rank = ranksOf(seen);
+    const std::vector<std::int32_t> described = describedBy(level);
     const std::size_t nodes = std::size_t(level.width) * std::size_t(level.height);
     const Windows windows(seen, level);
-    level.appearance = projectAll(axesOf(nodes, windows.length(), kAppearance, windows), nodes, windows, ctx);
+    level.appearance =
+        projectAll(axesOf(described, windows.length(), kAppearance, windows), nodes, windows, ctx);
     const auto taps = [&level](std::int32_t node, float* out) { tapsAround(level, node, out); };
-    level.taps = axesOf(nodes, 4 * kAppearance, kFeature, taps);
+    level.taps = axesOf(described, 4 * kAppearance, kFeature, taps);
     level.feature = projectAll(level.taps, nodes, taps, ctx);
-    // The axes are centred, so the mean feature is zero.
-    for (float f : level.feature) level.spread += double(f) * double(f);
-    level.spread /= double(level.feature.size() / kFeature);
-    level.similarCount = similar;
-    if (similar > 0) SimilarNodes(level, similar).find(ctx);
+    level.spread = spreadOf(level, described);
+    if (similar > 0) findSimilarNodes(level, similar, ctx);
     return level;
 }
 

@@ -21,12 +21,13 @@ inline constexpr std::array<Vec2f, 4> kTaps{{{-1, -1}, {1, -1}, {-1, 1}, {1, 1}}
 /// a lattice of nodes every texel's window of 5 x 5 places a step apart, reduced to its kAppearance principal
 /// components (its appearance), and the appearances of the four taps around, reduced to kFeature (its
 /// feature). The image is smoothed for coarse steps. Near the border of a sample that is not tileable windows
-/// are mirrored, and nodes in the margin are no sources.
+/// are mirrored, and nodes in the margin are no sources; the same holds beside texels that are not valid.
 struct SampleLevel {
     double step = 1;                        ///< [texels]
     int stride = 1;                         ///< [texels] between nodes
     int width = 0, height = 0, margin = 0;  ///< [nodes]
     bool tileable = false;
+    std::vector<char> usable;       ///< [height x width] 0: no source; empty: only the margin is none
     std::vector<float> appearance;  ///< [height x width x kAppearance]
     std::vector<float> feature;     ///< [height x width x kFeature]
     double spread = 0;              ///< mean squared distance of a feature from the mean of all
@@ -47,12 +48,15 @@ struct SampleLevel {
     Vec2f centre(std::int32_t node) const {
         return {(float(node % width) + 0.5f) * float(stride), (float(node / width) + 0.5f) * float(stride)};
     }
-    /// False in the margin and beyond it.
+    /// False in the margin and beyond it, and beside texels that are not valid.
     bool isSource(const Vec2f& at) const {
-        if (tileable) return true;
-        const float m = float(margin * stride);
-        return at.x >= m && at.y >= m && at.x < float(width * stride) - m &&
-               at.y < float(height * stride) - m;
+        if (!tileable) {
+            const float m = float(margin * stride);
+            if (!(at.x >= m && at.y >= m && at.x < float(width * stride) - m &&
+                  at.y < float(height * stride) - m))
+                return false;
+        }
+        return usable.empty() || usable[std::size_t(node(at))] != 0;
     }
     /// out[kFeature] from [4 x kAppearance].
     void toFeature(const float* fourAppearances, float* out) const { taps.project(fourAppearances, out); }
@@ -60,11 +64,16 @@ struct SampleLevel {
 
 /// @param step     [texels] above 0
 /// @param similar  number of similar nodes kept for each, 0..8
-/// @throw Error EmptyInput (no texels), Cancelled
+/// @throw Error EmptyInput (no texels, or none valid), Cancelled
 /// @par Cost    O(texels * channels) for the windows, and a search among at most 16384 nodes
 /// @par Repeats same bits for any number of threads
 SampleLevel sampleLevel(const SampleImage& image, double step, std::size_t similar,
                         const RunContext& ctx = {});
+
+/// Fills SampleLevel::similar of a level that has features: for every source the `count` sources with the
+/// nearest features, far from it and each other.
+/// @throw Error Cancelled   @par Repeats same bits for any number of threads
+void findSimilarNodes(SampleLevel& level, std::size_t count, const RunContext& ctx = {});
 
 /// The image smoothed by a Gaussian. @param sigma  [texels]; at most 0.3: unchanged
 SampleImage smoothed(const SampleImage& image, double sigma, const RunContext& ctx = {});

@@ -16,6 +16,25 @@ void cubicWeights(float t, float* w) {
 
 }  // namespace
 
+int largestSquare(const SampleImage& image) {
+    if (image.valid.empty()) return std::min(image.width, image.height);
+    // Of every texel the side of the largest square that ends there, from the three before it.
+    std::vector<int> row(std::size_t(image.width), 0);
+    int largest = 0;
+    for (int y = 0; y < image.height; ++y) {
+        int diagonal = 0;
+        for (int x = 0; x < image.width; ++x) {
+            const int above = row[std::size_t(x)];
+            const int left = x > 0 ? row[std::size_t(x - 1)] : 0;
+            const bool valid = image.valid[std::size_t(y) * std::size_t(image.width) + std::size_t(x)] != 0;
+            row[std::size_t(x)] = valid ? 1 + std::min({above, left, x > 0 ? diagonal : 0}) : 0;
+            diagonal = above;
+            largest = std::max(largest, row[std::size_t(x)]);
+        }
+    }
+    return largest;
+}
+
 const float* nearestTexel(const SampleImage& image, const Vec2f& at) {
     return image.texel(foldedTexel(int(std::floor(at.x)), image.width, image.tileable),
                        foldedTexel(int(std::floor(at.y)), image.height, image.tileable));

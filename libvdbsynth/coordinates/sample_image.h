@@ -13,6 +13,9 @@ struct SampleImage {
     int width = 0, height = 0, channels = 0;
     bool tileable = false;      ///< continues at its opposite border; else mirrored there
     std::vector<float> values;  ///< [height x width x channels], the lowest row first
+    /// [height x width] 0 where nothing may be copied from, as between the charts of an atlas; values there
+    /// only continue those around. Empty: all is good.
+    std::vector<char> valid{};
 
     std::size_t texels() const { return std::size_t(width) * std::size_t(height); }
     const float* texel(int x, int y) const { return values.data() + offset(x, y); }
@@ -30,6 +33,9 @@ inline int foldedTexel(int x, int size, bool wraps) {
     if (x < 0) x += period;
     return x < size ? x : period - 1 - x;
 }
+
+/// [texels] side of the largest square of valid texels; the shorter side of an image without a mask.
+int largestSquare(const SampleImage& image);
 
 /// The nearest texel's values at a coordinate. @return [channels], valid as long as the image
 const float* nearestTexel(const SampleImage& image, const Vec2f& at);

@@ -174,3 +174,20 @@ TEST_CASE("synthesizeCoordinates: every refusal") {
         [&](const RunContext& ctx) { synthesizeCoordinates(sites, {noise}, 1, {}, ctx); });
     CHECK(thrown.code == int(ErrorCode::Cancelled));
 }
+
+TEST_CASE("synthesizeCoordinates: takes nothing from texels that are not valid") {
+    SampleImage image = test::noiseSample(64, 64);
+    image.valid.assign(image.texels(), 0);
+    const auto valid = [](int x, int y) { return x >= 8 && x < 40 && y >= 20 && y < 60; };
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x) image.valid[std::size_t(y * 64 + x)] = valid(x, y);
+    const test::PointShape plane = test::latticePlane(60);
+    CoordinateSites sites;
+    sites.sites = sitesOfPoints(plane.point, plane.normal, kSiteNeighbours);
+    sites.tangent.assign(plane.point.size(), {1, 0, 0});
+    const CoordinateResult result = synthesizeCoordinates(sites, {image}, 1);
+    for (const Vec2f& u : result.coordinate) REQUIRE(valid(int(u.x), int(u.y)));
+
+    image.valid.resize(10);
+    CHECK_THROWS_AS(synthesizeCoordinates(sites, {image}, 1), Error);
+}

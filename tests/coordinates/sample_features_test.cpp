@@ -101,3 +101,34 @@ TEST_CASE("sampleLevel: large samples, tiny ones, none, threads, cancel") {
         [](const RunContext& ctx) { sampleLevel(test::noiseSample(64, 64), 1, 2, ctx); });
     CHECK(thrown.code == int(ErrorCode::Cancelled));
 }
+
+TEST_CASE("sampleLevel: nodes beside texels that are not valid are no sources") {
+    SampleImage image = test::noiseSample(40, 24);
+    image.valid.assign(image.texels(), 1);
+    for (int y = 0; y < 24; ++y)
+        for (int x = 20; x < 40; ++x) {
+            image.valid[std::size_t(y * 40 + x)] = 0;
+            image.texel(x, y)[0] = 0;
+        }
+    const SampleLevel level = sampleLevel(image, 1, 2);
+    CHECK(level.isSource({10.5f, 10.5f}));
+    CHECK(level.isSource({18.5f, 10.5f}));
+    CHECK_FALSE(level.isSource({19.5f, 10.5f}));  // within a step
+    CHECK_FALSE(level.isSource({30.5f, 10.5f}));
+    for (std::int32_t node = 0; node < 40 * 24; ++node)
+        for (std::size_t k = 0; k < 2 && level.isSource(level.centre(node)); ++k) {
+            const std::int32_t like = level.similar[std::size_t(node) * 2 + k];
+            if (like >= 0) REQUIRE(level.isSource(level.centre(like)));
+        }
+    // As if the rest were not there.
+    SampleImage half{20, 24, image.channels, false, {}};
+    for (int y = 0; y < 24; ++y) half.values.insert(half.values.end(), image.texel(0, y), image.texel(20, y));
+    CHECK(level.spread == Approx(sampleLevel(half, 1, 0).spread).epsilon(0.15));
+
+    // Where a margin would leave nothing it is narrower.
+    image.valid.assign(image.texels(), 0);
+    image.valid[12 * 40 + 12] = 1;
+    CHECK(sampleLevel(image, 4, 0).isSource({12.5f, 12.5f}));
+    image.valid.assign(image.texels(), 0);
+    CHECK_THROWS_AS(sampleLevel(image, 1, 0), Error);
+}

@@ -66,3 +66,16 @@ TEST_CASE("readCubic: stays within the four texels around") {
     readCubic(step, {1.75f, 0.5f}, &out);  // steeper than linear: 0.203125 by the weights at t = 0.25
     CHECK(out == Approx(0.203125));
 }
+
+TEST_CASE("largestSquare: the shorter side without a mask, else the largest square of valid texels") {
+    SampleImage image{6, 4, 1, false, std::vector<float>(24, 0)};
+    CHECK(largestSquare(image) == 4);
+    image.valid.assign(24, 1);
+    CHECK(largestSquare(image) == 4);
+    image.valid[1 * 6 + 2] = 0;  // leaves 3 columns of 4 rows at the right
+    CHECK(largestSquare(image) == 3);
+    image.valid.assign(24, 0);
+    CHECK(largestSquare(image) == 0);
+    image.valid[23] = 1;
+    CHECK(largestSquare(image) == 1);
+}

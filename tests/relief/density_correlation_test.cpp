@@ -1,0 +1,1 @@
+#include "libvdbsynth/relief/density_correlation.h"

@@ -1,0 +1,1 @@
+#include "libvdbsynth/relief/grown_relief.h"

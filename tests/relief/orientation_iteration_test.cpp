@@ -1,0 +1,1 @@
+#include "libvdbsynth/relief/orientation_iteration.h"

@@ -1,0 +1,1 @@
+#include "libvdbsynth/relief/relief_distance.h"

@@ -65,6 +65,8 @@ public:
                 stage.advance();
             }
         }
+        const double voxel = mMatcher.distance().voxel();
+        if (mMatched > 0) mResult.grownMean = mCosts / double(mMatched) * voxel * voxel;
         return std::move(mResult);
     }
 
@@ -114,7 +116,13 @@ private:
         const std::size_t count =
             std::clamp<std::size_t>(std::size_t(std::lround(mOptions.top / 100 * double(sites))), 1, sites);
         const std::vector<ReliefMatch> best = mMatcher.best(mTerms, count, likely(t), mContext);
-        take(t, best[Random(mContext.seed, t, kDrawsMatch).below(std::uint32_t(best.size()))].site);
+        const ReliefMatch& match =
+            best[Random(mContext.seed, t, kDrawsMatch).below(std::uint32_t(best.size()))];
+        float weights = 0;
+        for (const ReliefTerm& term : mTerms) weights += term.weight;
+        if (weights > 0) mCosts += double(match.cost / weights);
+        ++mMatched;
+        take(t, match.site);
     }
 
     // Where neighbours came from, and the sites around there: good matches are often among them.
@@ -145,6 +153,8 @@ private:
     GrowthQueue mQueue;
     double mSeedRadius;
     std::uint32_t mGrown = 0;
+    double mCosts = 0;  // [voxels^2] of what was matched
+    std::size_t mMatched = 0;
     std::vector<ReliefTerm> mTerms;
     GrownRelief mResult;
 };

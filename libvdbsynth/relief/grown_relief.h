@@ -38,7 +38,9 @@ struct GrownRelief {
     std::vector<std::uint32_t> order;   ///< [sites] 0 for the first that got its displacement
     std::size_t seeds = 0;              ///< seed patches: one for each part of the target
     double neighbourhood = 0;           ///< [world] radius that was used
-    ReliefMismatch mismatch;            ///< of the whole result (assignedMismatch)
+    /// [world^2] mean SSD / sum of w_v over the sites that grew, each at its time: what was there of N(t)
+    double grownMean = 0;
+    ReliefMismatch mismatch;  ///< of the whole result, where it came from (assignedMismatch)
 };
 
 /// Grows a sample's relief over a target, the synthesis of [breckon2006], exhaustive and site by site: the

@@ -154,13 +154,16 @@ OrientedRelief growAndOrient(const ReliefSites& sample, const ReliefDistance& di
             target, radiusFor(target, options.neighbourhood), options.weightFalloff, ctx);
         OrientedRelief best;
         std::vector<Vec3f> tangent = smoothestTangents(target, ctx);
+        RunContext quiet = ctx;  // what the first growth says holds for all
+        quiet.onMessage = nullptr;
         double change = 0;
         bool converged = false;
         int growths = 0;
         while (!converged && growths < kMostGrowths) {
-            GrownRelief relief = growRelief(sample, distance, target, tangent, options, ctx);
+            GrownRelief relief =
+                growRelief(sample, distance, target, tangent, options, growths == 0 ? ctx : quiet);
             const ReliefSites surface{target, tangent, relief.displacement};
-            if (growths++ == 0 || relief.mismatch.mean < best.relief.mismatch.mean) {
+            if (growths++ == 0 || relief.grownMean < best.relief.grownMean) {
                 best.orientation.tangent = tangent;
                 best.relief = relief;
             }

@@ -9,6 +9,8 @@
 namespace vdbsynth {
 namespace {
 
+constexpr double kNoise = 1e-4;  // [voxels^2] differences under it say nothing about directions
+
 // D of one site and angle, divided by the weights: the terms rotated by -angle at the best of the references.
 float leastCost(const ReliefMatcher& matcher, const std::vector<ReliefTerm>& terms, const Vec2f& angle,
                 const std::vector<std::uint32_t>& references, std::vector<ReliefTerm>& rotated) {
@@ -35,8 +37,7 @@ void normalizeCosts(RotationCosts& costs, std::size_t angles) {
             sum += double(cost[a]);
         }
     }
-    const double mean = sum / double(std::max<std::size_t>(costs.cost.size(), 1));
-    if (!(mean > 0)) return;
+    const double mean = std::max(kNoise, sum / double(std::max<std::size_t>(costs.cost.size(), 1)));
     for (float& cost : costs.cost) cost = float(double(cost) / mean);
 }
 

@@ -32,11 +32,15 @@ public:
     /// A place [world] in voxels from the field's corner.
     Vec3f toVoxels(const Vec3f& place) const { return (place - mCorner) * float(1 / mVoxel); }
 
+    /// Whether the field knows anything there. @param place  by toVoxels
+    bool inBox(const Vec3f& place) const {
+        return place.x >= 0 && place.x < mEnd.x && place.y >= 0 && place.y < mEnd.y && place.z >= 0 &&
+               place.z < mEnd.z;
+    }
+
     /// Squared distance [voxels^2], at most halfWidth^2. @param place  by toVoxels
     float squared(const Vec3f& place) const {
-        if (!(place.x >= 0 && place.x < mEnd.x && place.y >= 0 && place.y < mEnd.y && place.z >= 0 &&
-              place.z < mEnd.z))
-            return mMost;
+        if (!inBox(place)) return mMost;
         const int x = int(place.x), y = int(place.y), z = int(place.z);
         const std::int32_t slot = mSlots[latticeIndex({x >> 3, y >> 3, z >> 3}, mBricks)];
         if (slot < 0) return mMost;

@@ -40,24 +40,30 @@ private:
 // What is summed over sites, in chunks that do not depend on the threads.
 struct Sums {
     double mean = 0;
-    std::size_t capped = 0, looked = 0, sites = 0;
+    std::size_t capped = 0, inside = 0, outside = 0, sites = 0;
 };
 
 // Adds one site. `frame` in voxels.
 void addSite(const ReliefMatcher& matcher, const ReliefFrame& frame, const std::vector<ReliefTerm>& terms,
              Sums& sums) {
-    if (terms.empty()) return;
-    const float most = matcher.distance().halfWidth() * matcher.distance().halfWidth();
+    const ReliefDistance& distance = matcher.distance();
+    const float most = distance.halfWidth() * distance.halfWidth();
     double cost = 0, weights = 0;
     for (const ReliefTerm& term : terms) {
-        const float squared = matcher.distance().squared(frame.point + frame.toWorld(term.place));
+        const Vec3f place = frame.point + frame.toWorld(term.place);
+        if (!distance.inBox(place)) {
+            ++sums.outside;
+            continue;
+        }
+        ++sums.inside;
+        const float squared = distance.squared(place);
         cost += double(term.weight) * double(squared);
         weights += double(term.weight);
         if (squared >= most) ++sums.capped;
     }
-    sums.looked += terms.size();
+    if (!(weights > 0)) return;
     ++sums.sites;
-    if (weights > 0) sums.mean += cost / weights;
+    sums.mean += cost / weights;
 }
 
 // Over all sites; `placeOf(t, terms)` gives the frame, in voxels, that N(t) is mapped to.
@@ -80,14 +86,16 @@ ReliefMismatch mismatchOver(const ReliefSites& surface, const ReliefMatcher& mat
     for (const Sums& part : sums) {
         all.mean += part.mean;
         all.capped += part.capped;
-        all.looked += part.looked;
+        all.inside += part.inside;
+        all.outside += part.outside;
         all.sites += part.sites;
     }
     ReliefMismatch result;
     result.sites = all.sites;
     const double voxel = matcher.distance().voxel();
     if (all.sites > 0) result.mean = all.mean / double(all.sites) * voxel * voxel;
-    if (all.looked > 0) result.capped = double(all.capped) / double(all.looked);
+    if (all.inside > 0) result.capped = double(all.capped) / double(all.inside);
+    if (all.inside + all.outside > 0) result.outside = double(all.outside) / double(all.inside + all.outside);
     return result;
 }
 

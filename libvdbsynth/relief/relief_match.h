@@ -66,13 +66,18 @@ private:
 
 /// How far a surface's neighbourhoods lie from the sample's surface where they came from.
 struct ReliefMismatch {
-    double mean = 0;        ///< [world^2] mean over sites of SSD / sum of w_v, over whole neighbourhoods
-    double capped = 0;      ///< share of all distances that were the band's half-width (relief_distance.h)
-    std::size_t sites = 0;  ///< that have neighbours and so were counted
+    double mean = 0;  ///< [world^2] mean over sites of SSD / sum of w_v, over whole neighbourhoods
+    /// Share of places beyond the field's box, which are left out: at the border of an open sample a
+    /// neighbourhood goes on where the sample does not.
+    double outside = 0;
+    double capped = 0;  ///< share of the others whose distance is the band's half-width (relief_distance.h)
+    std::size_t sites = 0;  ///< that have neighbours inside and so were counted
 };
 
-/// eq. 1 for any assignment, so that methods can be compared: of every site t of `surface` the whole N(t) is
-/// mapped from t's frame to the frame `source[t]` of the sample.
+/// eq. 1 for any assignment, so that methods can be compared: of every site t of `surface` the whole N(t),
+/// what came later than t too, is mapped from t's frame to the frame `source[t]` of the sample. While relief
+/// grows only a part of N(t) is there, so a front may take its source from the sample's border; bestMismatch
+/// does not mind.
 /// @param source          [sites] frames on the sample, world; their points need not be its sites
 /// @param neighbourhoods  of surface.sites
 /// @throw Error ShapeMismatch (another number of sources), as requireReliefSites, Cancelled

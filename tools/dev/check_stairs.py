@@ -11,10 +11,10 @@ for room, direct in [
     ("base", []), ("math", ["base"]), ("geometry", ["math"]), ("points", ["geometry"]), ("grid", ["geometry"]),
     ("distance", ["grid"]), ("solid", ["distance"]), ("raster", ["distance"]), ("map", ["grid"]),
     ("io", ["raster"]), ("procedural", ["distance"]), ("surface", ["grid", "points"]), ("search", ["io"]),
-    ("coordinates", ["search", "surface"]), ("texture", ["coordinates", "map"]),
-    ("synth", ["search", "map"]), ("analogy", ["search", "surface", "map"]), ("measure", ["distance", "synth"]),
+    ("coordinates", ["search", "surface"]), ("texture", ["coordinates", "map"]), ("relief", ["coordinates", "map", "distance"]),
+    ("synth", ["search", "map"]), ("analogy", ["search", "surface", "map"]), ("measure", ["relief", "synth"]),
     ("vdb", ["io", "map", "solid"]), ("render", ["vdb"]),
-    ("pipeline", ["measure", "synth", "analogy", "texture", "procedural", "render"]), ("tools", ["pipeline"]),
+    ("pipeline", ["measure", "synth", "analogy", "texture", "relief", "procedural", "render"]), ("tools", ["pipeline"]),
 ]:
     BELOW[room] = {room}.union(*[BELOW[d] for d in direct]) if direct else {room}
 

@@ -67,6 +67,7 @@ int baseMargin(double radius) {
 BaseSurface baseFromField(const BrickField& scan, const SmoothField& smooth, const Mesh& surface,
                           const BaseOptions& options, const RunContext& ctx) {
     BaseSurface base;
+    base.radius = options.radius;
     measureRelief(base, distancesFromBase(smooth, surface, ctx), options.radius);
     RebuildOptions rebuild;
     rebuild.halfWidth = base.reach;

@@ -33,6 +33,7 @@ int baseMargin(double radius);
 struct BaseSurface {
     BrickField distance;   ///< [voxels] to the base, negative inside, clamped to -reach..reach
     BrickField scan;       ///< [voxels] to the scan's surface, clamped the same; the same box
+    double radius = 6;     ///< [voxels] of the base's options
     float reach = 3;       ///< [voxels] that both are known for; holds the relief and two voxels
     double amplitude = 0;  ///< [voxels] distance from the base that a thousandth of the scan exceeds
     double beyond = 0;     ///< share of the scan's surface that is farther away than the reach

@@ -11,9 +11,8 @@ for room, direct in [
     ("base", []), ("math", ["base"]), ("geometry", ["math"]), ("points", ["geometry"]), ("grid", ["geometry"]),
     ("distance", ["grid"]), ("solid", ["distance"]), ("raster", ["distance"]), ("map", ["grid"]),
     ("io", ["raster"]), ("procedural", ["distance"]), ("surface", ["grid", "points"]), ("search", ["io"]),
-    ("coordinates", ["search", "surface"]), ("texture", ["coordinates", "map"]),
-    ("relief", ["search", "surface", "map", "distance"]),
-    ("synth", ["search", "map"]), ("analogy", ["search", "surface", "map"]), ("measure", ["distance", "synth"]),
+    ("coordinates", ["search", "surface"]), ("texture", ["coordinates", "map"]), ("relief", ["coordinates", "map", "distance"]),
+    ("synth", ["search", "map"]), ("analogy", ["search", "surface", "map"]), ("measure", ["relief", "synth"]),
     ("vdb", ["io", "map", "solid"]), ("render", ["vdb"]),
     ("pipeline", ["measure", "synth", "analogy", "texture", "relief", "procedural", "render"]), ("tools", ["pipeline"]),
 ]:

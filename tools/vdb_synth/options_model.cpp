@@ -8,8 +8,11 @@ namespace {
 using Names = std::vector<std::string>;
 
 // Commands that take any geometry and convert it to a level set.
-const Names kModel{"convert", "crop",    "mask",   "match",   "synth",
-                   "analogy", "texture", "repeat", "compare", "render"};
+const Names kModel{"convert", "crop",   "mask",    "match",  "synth",         "analogy",
+                   "texture", "repeat", "compare", "render", "relief-extract"};
+
+// relief-extract has a base of its own.
+const Names kWithImageBase(kModel.begin(), kModel.end() - 1);
 
 std::vector<Option> inputTable() {
     const auto with = [](Names names, const Names& more) {
@@ -89,7 +92,7 @@ std::vector<Option> inputTable() {
             .measuredIn(Unit::Voxels)
             .says("half-width of the narrow band of the result")
             .initially("3")
-            .takenBy({"convert", "crop", "synth", "analogy", "texture", "repeat", "make"})
+            .takenBy({"convert", "crop", "synth", "analogy", "texture", "repeat", "make", "relief-extract"})
             .butFor("repeat",
                     [](Option& o) { o.initially("").otherwiseIs("that of the run that wrote the map"); }),
     };
@@ -115,7 +118,7 @@ std::vector<Option> rasterTable() {
             .in(Group::Raster)
             .says("thickness of the solid under an image's lowest point")
             .otherwiseIs("a 20th of its longer side")
-            .takenBy(kModel),
+            .takenBy(kWithImageBase),
         choice("plane", "PLANE", {{"xy", ""}, {"yz", ""}, {"zx", ""}})
             .in(Group::Raster)
             .says("plane of an image")

@@ -5,8 +5,9 @@
 namespace vdbsynth::cli {
 
 std::vector<Option> runningOptionTable() {
-    const std::vector<std::string> every{"convert", "info",    "crop",   "mask",    "match",  "synth",
-                                         "analogy", "texture", "repeat", "compare", "render", "make"};
+    const std::vector<std::string> every{"convert", "info",    "crop",          "mask",   "match",
+                                         "synth",   "analogy", "texture",       "repeat", "compare",
+                                         "render",  "make",    "relief-extract"};
     std::vector<Option> table{
         option(Kind::Seed, "seed", "N")
             .says("seed of everything random")

@@ -140,7 +140,9 @@ void readRasterOptions(const Arguments& arguments, ModelOptions& options) {
         options.heights.pixelSides =
             options.volume.pixelSides = {sides[0], sides[1], sides.size() > 2 ? sides[2] : 0};
     options.heights.height = arguments.real("height");
-    options.heights.base = arguments.real("base");
+    // relief-extract has another option of that name.
+    const Option* base = findOption(arguments.command(), "base");
+    if (base && base->kind == Kind::Real) options.heights.base = arguments.real("base");
     const std::string plane = arguments.text("plane");
     options.heights.plane = plane == "yz"   ? HeightPlane::YZ
                             : plane == "zx" ? HeightPlane::ZX

@@ -1,0 +1,87 @@
+#include "libvdbsynth/relief/base_scale.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/distance/zero_level.h"
+#include "libvdbsynth/math/trigonometry.h"
+#include "libvdbsynth/relief/base_surface_steps.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vdbsynth {
+namespace {
+
+constexpr double kSmallest = 2;            // [voxels] first radius
+constexpr double kNoise = 1. / 3;          // [voxels] deviation that a lattice may make
+constexpr double kNearlySmallest = 0.25;   // of the growth
+constexpr double kGap = 2;                 // growth under which there is a gap
+constexpr double kShareOfLongest = 0.025;  // the radius without a gap
+constexpr double kStepRadius = 1.4;        // samples a radius: variances need no more
+
+double deviationAt(const BrickField& scan, const Mesh& surface, double radius, float band,
+                   const RunContext& ctx) {
+    const int step = std::clamp(int(radius / kStepRadius), 1, 4);
+    const SmoothField distances = latticeDistances(scan, surface, step, 5 * float(radius), band, ctx);
+    const SmoothField smooth = smoothedDistances(distances, BaseKind::Twicing, radius, ctx);
+    double sum = 0;
+    for (const float h : distancesFromBase(smooth, surface, ctx)) sum += double(h) * double(h);
+    return std::sqrt(sum / double(surface.points.size()));
+}
+
+// Growth of the variance over the octave around each radius but the first and last.
+std::vector<double> growths(const std::vector<double>& deviation) {
+    std::vector<double> growth;
+    for (std::size_t i = 1; i + 1 < deviation.size(); ++i)
+        growth.push_back(2 * (logarithm2(std::max(1e-9, deviation[i + 1])) -
+                              logarithm2(std::max(1e-9, deviation[i - 1]))));
+    return growth;
+}
+
+void choose(BaseScale& scale, double longest) {
+    const std::vector<double> growth = growths(scale.deviation);
+    double least = 1e9;
+    for (std::size_t i = 0; i < growth.size(); ++i)
+        if (scale.deviation[i + 1] >= kNoise) least = std::min(least, growth[i]);
+    for (std::size_t i = 0; i < growth.size() && least < kGap; ++i) {
+        if (scale.deviation[i + 1] < kNoise || growth[i] > least + kNearlySmallest) continue;
+        scale.radius = scale.radii[i + 1];
+        scale.gap = true;
+        scale.reason = "the relief's variance grows least there, " +
+                       roundedText(exponential(growth[i] * 0.6931471805599453), 3) +
+                       " times an octave; its deviation is " + roundedText(scale.deviation[i + 1], 3) +
+                       " voxels";
+        return;
+    }
+    scale.radius = std::clamp(longest * kShareOfLongest, 1.0, std::max(1.0, largestBaseRadius(longest)));
+    scale.reason = least > 1e8 ? "a 40th of the model, as no relief stands out of the lattice's noise"
+                               : "a 40th of the model, as the relief's spectrum has no gap";
+}
+
+}  // namespace
+
+double largestBaseRadius(double longest) {
+    return std::min(longest / 10, 1000.0);
+}
+
+BaseScale findBaseRadius(const BrickField& scan, double longest, float band, const RunContext& ctx) {
+    requireOption(longest >= 1 && longest < 1e9, "longest", roundedText(longest, 6), "at least 1 [voxels]");
+    requireField(&scan, "the scan");
+    const Mesh surface = zeroLevel(scan, scan.box(), Facing::Outward, ctx);
+    if (surface.faceCount() == 0) throw Error(ErrorCode::EmptyInput, "the scan has no surface");
+    BaseScale scale;
+    for (int k = 0;; ++k) {
+        const double radius = kSmallest * double(1 << (k / 2)) * (k % 2 ? std::sqrt(2.0) : 1);
+        if (radius > largestBaseRadius(longest)) break;
+        scale.radii.push_back(radius);
+    }
+    Stage stage(ctx, "finding the relief's scale", std::max<std::size_t>(1, scale.radii.size()));
+    for (const double radius : scale.radii) {
+        scale.deviation.push_back(deviationAt(scan, surface, radius, band, ctx));
+        stage.advance();
+    }
+    choose(scale, longest);
+    return scale;
+}
+
+}  // namespace vdbsynth

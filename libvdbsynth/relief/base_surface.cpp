@@ -1,0 +1,103 @@
+#include "libvdbsynth/relief/base_surface.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/distance/rebuild_band.h"
+#include "libvdbsynth/distance/widen_band.h"
+#include "libvdbsynth/distance/zero_level.h"
+#include "libvdbsynth/relief/base_surface_steps.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vdbsynth {
+namespace {
+
+constexpr float kRadiiReached = 5;  // four for the mean, one for the relief
+
+// A field whose zero level is meant as distances to first order.
+BrickField firstOrder(const BrickField& field, float limit, const RunContext& ctx) {
+    return BrickField::generate(field.box(), ctx, [&](const IndexBox& brick, float* samples) {
+        float constant = 0;
+        if (field.constantIn(brick.expanded(1), constant)) {
+            std::fill_n(samples, BrickField::kSamples, constant);
+            return;
+        }
+        constexpr int kPadded = BrickField::kSide + 2, kX = kPadded * kPadded, kY = kPadded;
+        float padded[kPadded * kPadded * kPadded];
+        field.readBox(brick.min - Index3{1, 1, 1}, {kPadded, kPadded, kPadded}, padded);
+        forEachVoxel(IndexBox::cube({1, 1, 1}, BrickField::kSide), [&](const Index3& p) {
+            const float* v = padded + p.x * kX + p.y * kY + p.z;
+            const Vec3f gradient{(v[kX] - v[-kX]) / 2, (v[kY] - v[-kY]) / 2, (v[1] - v[-1]) / 2};
+            // Next to a medial axis a short gradient would make distances too long.
+            *samples++ = std::clamp(*v / std::max(length(gradient), 0.5f), -limit, limit);
+        });
+    });
+}
+
+BrickField overBox(const BrickField& field, const IndexBox& box, float limit, const RunContext& ctx) {
+    return BrickField::generate(box, ctx, [&](const IndexBox& brick, float* samples) {
+        field.readBox(brick.min, brick.size(), samples);
+        for (int i = 0; i < BrickField::kSamples; ++i) samples[i] = std::clamp(samples[i], -limit, limit);
+    });
+}
+
+// The reach that holds the relief, of which a thousandth may stand out.
+void measureRelief(BaseSurface& base, std::vector<float> distances, double radius) {
+    std::sort(distances.begin(), distances.end());
+    base.amplitude = double(distances[distances.size() - 1 - distances.size() / 1000]);
+    base.reach = float(std::clamp(1.25 * base.amplitude + 2, 3.0, 1.5 * radius + 4));
+    const auto above = std::lower_bound(distances.begin(), distances.end(), base.reach - 1);
+    base.beyond = double(distances.end() - above) / double(distances.size());
+}
+
+}  // namespace
+
+void validate(const BaseOptions& options) {
+    requireOption(options.radius >= 1 && options.radius <= 1000, "radius", roundedText(options.radius, 6),
+                  "from 1 to 1000 [voxels]");
+    requireOption(options.band >= 1.5f && options.band <= 300, "band", roundedText(double(options.band), 6),
+                  "from 1.5 to 300 [voxels]");
+}
+
+int baseMargin(double radius) {
+    return int(std::ceil(kRadiiReached * radius)) + 3;
+}
+
+BaseSurface baseFromField(const BrickField& scan, const SmoothField& smooth, const Mesh& surface,
+                          const BaseOptions& options, const RunContext& ctx) {
+    BaseSurface base;
+    base.radius = options.radius;
+    measureRelief(base, distancesFromBase(smooth, surface, ctx), options.radius);
+    RebuildOptions rebuild;
+    rebuild.halfWidth = base.reach;
+    rebuild.keepDistances = true;
+    rebuild.band = base.reach + 1;
+    const BrickField field =
+        firstOrder(refined(smooth, scan.box(), 2 * base.reach + 4, ctx), base.reach + 1, ctx);
+    base.distance = overBox(rebuiltBand(field, rebuild, ctx), scan.box(), base.reach, ctx);
+    base.scan = widenBand({scan, scan.box(), options.band}, base.reach, ctx);
+    if (zeroLevel(base.distance, scan.box(), Facing::Outward, ctx).faceCount() == 0)
+        throw Error(ErrorCode::EmptyInput, "`radius` " + roundedText(options.radius, 4) +
+                                               " voxels: no base is left of the model; use a smaller one");
+    return base;
+}
+
+BaseSurface baseSurface(const BrickField& scan, const BaseOptions& options, const RunContext& ctx) {
+    validate(options);
+    requireField(&scan, "the scan");
+    Stage stage(ctx, "smoothing the base", 3);
+    const Mesh surface = zeroLevel(scan, scan.box(), Facing::Outward, ctx);
+    if (surface.faceCount() == 0) throw Error(ErrorCode::EmptyInput, "the scan has no surface");
+    const int step = smoothingStep(options.radius);
+    const float reach = kRadiiReached * float(options.radius);
+    const SmoothField distances = latticeDistances(scan, surface, step, reach, options.band, ctx);
+    stage.advance();
+    const SmoothField smooth = smoothedDistances(distances, options.kind, options.radius, ctx);
+    stage.advance();
+    BaseSurface base = baseFromField(scan, smooth, surface, options, ctx);
+    stage.advance();
+    return base;
+}
+
+}  // namespace vdbsynth

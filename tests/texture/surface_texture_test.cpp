@@ -56,20 +56,6 @@ TEST_CASE("textureSurface: given directions are the tangents") {
     CHECK(result.singularities.empty());
 }
 
-TEST_CASE("textureSurface: without directions the field is smooth, with few singularities on a ball") {
-    const test::PointShape ball = test::spiralSphere(30000, 10);
-    const SurfaceSites sites = sitesOfPoints(ball.point, ball.normal, 8);
-    std::vector<Vec3f> singularities;
-    const std::vector<Vec3f> tangents = targetTangents(sites, {}, 0.2, &singularities);
-    CHECK(singularities.size() >= 1);
-    CHECK(singularities.size() <= 4);
-    std::size_t turned = 0;
-    for (std::size_t i = 0; i < sites.size(); ++i)
-        for (std::size_t k = sites.begin[i]; k < sites.begin[i + 1]; ++k)
-            turned += dot(tangents[i], tangents[sites.neighbours[k]]) < 0.94f;  // 20 degrees
-    CHECK(double(turned) < 0.02 * double(sites.neighbours.size()));
-}
-
 TEST_CASE("textureSurface: points at one place that face one way get one colour, others their own") {
     TextureTarget target = test::targetOf(test::latticePlane(20));
     for (int i = 0; i < 400; ++i) {

@@ -1,4 +1,5 @@
 #include "tools/vdb_synth/command.h"
+#include "tools/vdb_synth/relief_base_option.h"
 
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/pipeline/relief/relief_outputs.h"
@@ -7,14 +8,6 @@
 
 namespace vdbsynth::cli {
 namespace {
-
-BaseKind kindOf(const std::string& word) {
-    return word == "gaussian"   ? BaseKind::Gaussian
-           : word == "flow"     ? BaseKind::Flow
-           : word == "normals"  ? BaseKind::Normals
-           : word == "quadrics" ? BaseKind::Quadrics
-                                : BaseKind::Twicing;
-}
 
 nlohmann::json countsJson(const SurfaceCounts& counts) {
     return {{"solid_parts", counts.solids}, {"enclosed_voids", counts.voids}, {"tunnels", counts.tunnels}};
@@ -66,7 +59,7 @@ void reliefExtract(Run& run) {
     const std::vector<std::string> paths = run.outputPaths();
     const ModelOptions model = run.modelOptions();
     ReliefExtractOptions options;
-    options.base = kindOf(arguments.text("base"));
+    options.base = baseKindOf(arguments.text("base"));
     options.baseRadius = arguments.real("base-radius");
     if (arguments.has("strength")) options.strength = arguments.real("strength");
     options.halfWidth = model.halfWidth;

@@ -93,6 +93,6 @@ std::string helpText(const Command& command);
 void printLine(const std::string& text);
 
 extern const Command kAnalogy, kCompare, kConvert, kInfo, kCrop, kMask, kMatch, kSynth, kTexture, kRepeat,
-    kRender, kMake, kReliefExtract;
+    kRender, kMake, kRelief, kReliefExtract;
 
 }  // namespace vdbsynth::cli

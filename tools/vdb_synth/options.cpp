@@ -80,8 +80,8 @@ std::string flagOf(const std::string& field, const std::string& command) {
 const std::vector<Option>& allOptions() {
     static const std::vector<Option> all = [] {
         std::vector<Option> table;
-        for (const auto& part : {methodOptionTable(), textureOptionTable(), reliefExtractOptionTable(),
-                                 modelOptionTable(), runningOptionTable()})
+        for (const auto& part : {methodOptionTable(), textureOptionTable(), reliefOptionTable(),
+                                 reliefExtractOptionTable(), modelOptionTable(), runningOptionTable()})
             table.insert(table.end(), part.begin(), part.end());
         return table;
     }();

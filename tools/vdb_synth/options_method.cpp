@@ -160,7 +160,16 @@ std::vector<Option> analogyTable() {
                   "vectors or scalars FILE.vdb[:GRID], or strokes (world): .csv rows x,y,z,dx,dy,dz, .json, "
                   ".ply points with normals")
             .otherwiseIs("curvature")
-            .takenBy({"analogy", "texture"})
+            .takenBy({"analogy", "texture", "relief"})
+            .butFor(
+                "relief",
+                [](Option& o) {
+                    o.says(
+                         "direction of the sample's rows over TARGET: axis:x, axis:-z, around:y, radial, "
+                         "curvature, a grid of vectors or scalars FILE.vdb[:GRID], or strokes (world): .csv "
+                         "rows x,y,z,dx,dy,dz, .json, .ply points with normals")
+                        .otherwiseIs("a smooth field");
+                })
             .butFor("texture",
                     [](Option& o) {
                         o.says(
@@ -174,11 +183,23 @@ std::vector<Option> analogyTable() {
             .in(Group::Controls)
             .says("direction of the texture over A, given in the same ways")
             .otherwiseIs("the grid direction that make wrote into A, else curvature")
-            .takenBy({"analogy"}),
+            .takenBy({"analogy", "relief"})
+            .butFor("relief",
+                    [](Option& o) {
+                        o.says("direction of the relief over a SAMPLE, given in the same ways")
+                            .otherwiseIs("a smooth field");
+                    }),
         option(Kind::ModelOrGrid, "mask", "FILE")
             .in(Group::Controls)
             .says("where to put the texture: a grid of weights from 0 to 1, or the inside of a model")
-            .takenBy({"analogy"}),
+            .takenBy({"analogy", "relief"})
+            .butFor(
+                "relief",
+                [](Option& o) {
+                    o.says(
+                        "where to put the relief: a grid of weights from 0 to 1, or the inside of a model; "
+                        "elsewhere TARGET's voxels keep their bits");
+                }),
         real("scale", "S", 0.25, 4)
             .in(Group::Controls)
             .says("size of the texture")

@@ -8,11 +8,11 @@ namespace {
 using Names = std::vector<std::string>;
 
 // Commands that take any geometry and convert it to a level set.
-const Names kModel{"convert", "crop",   "mask",    "match",  "synth",         "analogy",
-                   "texture", "repeat", "compare", "render", "relief-extract"};
+const Names kModel{"convert", "crop",   "mask",    "match",  "synth",  "analogy",
+                   "texture", "repeat", "compare", "render", "relief", "relief-extract"};
 
-// relief-extract has a base of its own.
-const Names kWithImageBase(kModel.begin(), kModel.end() - 1);
+// The relief commands have a base of their own.
+const Names kWithImageBase(kModel.begin(), kModel.end() - 2);
 
 std::vector<Option> inputTable() {
     const auto with = [](Names names, const Names& more) {
@@ -28,6 +28,7 @@ std::vector<Option> inputTable() {
             .butFor("make", [](Option& o) { o.initially("1").noting("").in(Group::Result); })
             .butFor("mask", [](Option& o) { o.otherwiseIs("1 for box and ball"); })
             .butFor("analogy", [](Option& o) { o.says("side of a voxel of B"); })
+            .butFor("relief", [](Option& o) { o.says("side of a voxel of TARGET"); })
             .butFor("texture",
                     [](Option& o) { o.says("side of a voxel of a level set, or of OpenVDB points"); })
             .butFor("repeat",
@@ -44,6 +45,7 @@ std::vector<Option> inputTable() {
             .butFor("make",
                     [](Option& o) { o.from(16, 4096).initially("64").otherwiseIs("").in(Group::Result); })
             .butFor("analogy", [](Option& o) { o.says("voxels along the longest side of B"); })
+            .butFor("relief", [](Option& o) { o.says("voxels along the longest side of TARGET"); })
             .butFor("texture",
                     [](Option& o) {
                         o.says("voxels along the longest side of a level set made from the target");
@@ -58,7 +60,12 @@ std::vector<Option> inputTable() {
             .says("voxels along the longest side of a mesh A")
             .otherwiseIs("128")
             .noting("A2 has A's voxels")
-            .takenBy({"analogy"}),
+            .takenBy({"analogy", "relief"})
+            .butFor("relief",
+                    [](Option& o) {
+                        o.says("voxels along the longest side of a SAMPLE")
+                            .noting("a voxel of it lands on one of TARGET, times --scale");
+                    }),
         option(Kind::Text, "grid", "NAME")
             .in(Group::Input)
             .says("which grid of a VDB file, or array, channel or frame of a volume or image")
@@ -92,7 +99,8 @@ std::vector<Option> inputTable() {
             .measuredIn(Unit::Voxels)
             .says("half-width of the narrow band of the result")
             .initially("3")
-            .takenBy({"convert", "crop", "synth", "analogy", "texture", "repeat", "make", "relief-extract"})
+            .takenBy({"convert", "crop", "synth", "analogy", "texture", "repeat", "make", "relief",
+                      "relief-extract"})
             .butFor("repeat",
                     [](Option& o) { o.initially("").otherwiseIs("that of the run that wrote the map"); }),
     };
@@ -108,12 +116,22 @@ std::vector<Option> rasterTable() {
                   "and, for volumes, slices")
             .otherwiseIs("the file's, else 1")
             .sets({"pixelSize", "pixelSides"})
-            .takenBy(kModel),
+            .takenBy(kModel)
+            .butFor("relief",
+                    [](Option& o) {
+                        o.says("side of a pixel of a picture on TARGET")
+                            .otherwiseIs("a voxel of TARGET, times --scale");
+                    }),
         worldLength("height", "H")
             .in(Group::Raster)
             .says("height of white above black, or of the highest value above the lowest")
             .otherwiseIs("a tenth of the longer side, real values as they are")
-            .takenBy(kModel),
+            .takenBy(kModel)
+            .butFor("relief",
+                    [](Option& o) {
+                        o.says("height of white above black, of a picture as SAMPLE")
+                            .otherwiseIs("5 voxels of TARGET, times --scale");
+                    }),
         worldLength("base", "B")
             .in(Group::Raster)
             .says("thickness of the solid under an image's lowest point")
@@ -146,7 +164,7 @@ std::vector<Option> outputTable() {
             .says("file to write, its kind by extension: .vdb, .obj, .ply, .stl, .off, .glb, .gltf; heights "
                   "as .png or .exr")
             .repeatable()
-            .takenBy({"convert", "crop", "synth", "analogy", "repeat", "make"}),
+            .takenBy({"convert", "crop", "synth", "analogy", "repeat", "make", "relief"}),
         output("output", "FILE", {"ply", "obj", "off", "glb", "gltf", "vdb", "png", "exr"})
             .shortly('o')
             .says("file to write, its kind by extension: .ply points or mesh, .obj, .off, .glb, .gltf mesh, "
@@ -219,7 +237,7 @@ std::vector<Option> outputTable() {
             .says("merge flat parts of a mesh output")
             .initially("0")
             .noting("0 keeps all faces")
-            .takenBy({"convert", "synth", "analogy", "repeat"}),
+            .takenBy({"convert", "synth", "analogy", "repeat", "relief"}),
         flag("sharp")
             .in(Group::Output)
             .says(

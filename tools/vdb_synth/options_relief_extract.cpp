@@ -5,7 +5,7 @@
 namespace vdbsynth::cli {
 
 std::vector<Option> reliefExtractOptionTable() {
-    const std::vector<std::string> extract{"relief-extract"};
+    const std::vector<std::string> extract{"relief-extract"}, both{"relief", "relief-extract"};
     return {
         choice("base", "KIND",
                {{"twicing", "a Gaussian mean, corrected so that curved surfaces stay"},
@@ -14,7 +14,7 @@ std::vector<Option> reliefExtractOptionTable() {
             .says("how the smooth base is made")
             .initially("twicing")
             .sets({"base", "kind"})
-            .takenBy(extract),
+            .takenBy(both),
         worldLength("base-radius", "R")
             .in(Group::Method)
             .says("radius of the base: standard deviation of its Gaussian; the ISO 16610 cut-off wavelength "
@@ -22,7 +22,7 @@ std::vector<Option> reliefExtractOptionTable() {
                   "times that")
             .otherwiseIs("where the spectrum of the relief has its gap; -v says why")
             .sets({"baseRadius", "radius"})
-            .takenBy(extract),
+            .takenBy(both),
         real("strength", "S", -100, 100)
             .in(Group::Output)
             .says(

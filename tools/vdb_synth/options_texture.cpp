@@ -5,7 +5,8 @@
 namespace vdbsynth::cli {
 namespace {
 
-const std::vector<std::string> kTexture{"texture"}, kWithRepeat{"texture", "repeat"};
+const std::vector<std::string> kTexture{"texture"}, kWithRepeat{"texture", "repeat"},
+    kWithRelief{"texture", "relief"};
 
 std::vector<Option> methodTable() {
     return {
@@ -20,15 +21,15 @@ std::vector<Option> methodTable() {
         whole("levels", "N", 1, 12)
             .says("levels, coarse to fine")
             .otherwiseIs("as many as the sample's size asks for")
-            .takenBy(kTexture),
+            .takenBy(kWithRelief),
         whole("passes", "N", 0, 20)
             .says("passes of correction on every level, of --method default")
             .initially("2")
-            .takenBy(kTexture),
+            .takenBy(kWithRelief),
         real("coherence", "K", 0, 10)
             .says("preference for continuing a neighbour over the nearest match, of --method default")
             .initially("2")
-            .takenBy(kTexture),
+            .takenBy(kWithRelief),
         whole("neighbours", "K", 4, 128)
             .says("neighbours of a point, of --method parameterize, match and hybrid")
             .initially("25")
@@ -44,17 +45,17 @@ std::vector<Option> methodTable() {
         real("uniformity", "U", 0, 10)
             .says("preference for places of the image that are used less, of --method default")
             .initially("0.25")
-            .takenBy(kTexture),
+            .takenBy(kWithRelief),
         real("histogram", "H", 0, 10)
             .says("preference for values that are rarer than in the image, of --method default")
             .initially("0.75")
-            .takenBy(kTexture),
+            .takenBy(kWithRelief),
         real("max-rotation", "DEGREES", 0, 180)
             .says("how far pieces of the image may be rotated from the smooth field, of --method default "
                   "without "
                   "--direction")
             .initially("60")
-            .takenBy(kTexture),
+            .takenBy(kWithRelief),
         choice("blend", "HOW",
                {{"off", ""},
                 {"auto", "histogram for images without structure"},
@@ -65,7 +66,7 @@ std::vector<Option> methodTable() {
             .takenBy(kTexture),
         flag("draft")
             .says("a quick look: no passes of correction but on the coarsest level, nothing mixed")
-            .takenBy(kTexture),
+            .takenBy(kWithRelief),
     };
 }
 
@@ -79,7 +80,7 @@ std::vector<Option> controlTable() {
             .says("whether an image continues at its opposite border")
             .initially("auto")
             .sets({"tileable", "tile"})
-            .takenBy(kTexture),
+            .takenBy(kWithRelief),
         option(Kind::NamedImage, "channel", "NAME=FILE")
             .says("a further map of the image, of the same size: roughness, normal, height ...; synthesized "
                   "with it and written by this name")
@@ -96,7 +97,7 @@ std::vector<Option> controlTable() {
                 "(the largest region gets the first), FILE.vdb:GRID is a grid of numbers from 0, of two "
                 "images also of truths or of weights (above 0.5: the second), a MODEL has the second of two "
                 "inside")
-            .takenBy(kTexture),
+            .takenBy(kWithRelief),
         option(Kind::Text, "region-attribute", "NAME")
             .says("of several images: an attribute of the target's points that numbers the image for each, "
                   "from 0")

@@ -91,7 +91,7 @@ AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const Leve
     const int radius = (options.synthesis.half + 2) << (levels - 1);
     const int band = int(std::ceil(result.reach)) + radius + 2;
     const CutFaces cut = facesTouched(target);
-    const IndexBox box = grown(target.domain, cut, band);
+    const IndexBox box = grownBox(target.domain, cut, band);
     // Six bytes for each voxel of the box, whose bricks and slots they are, and 160 for each voxel of the
     // widened band, of frames, features and sources. Tuned with tools/dev/memory_models.py: 1.4 times the
     // peak.

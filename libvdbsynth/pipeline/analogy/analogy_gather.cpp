@@ -47,26 +47,6 @@ BrickField gatherTextured(const LevelSet& textured, const IndexBox& box, const C
     return scale == 1 ? field : scaled(field, scale, ctx);
 }
 
-CutFaces facesTouched(const LevelSet& model) {
-    CutFaces cut{};
-    if (!model.domainRecorded) return cut;
-    const IndexBox solid = solidBox(*model.grid, "the model");
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        cut[2 * axis] = solid.min[int(axis)] <= model.domain.min[int(axis)];
-        cut[2 * axis + 1] = solid.max[int(axis)] >= model.domain.max[int(axis)];
-    }
-    return cut;
-}
-
-IndexBox grown(const IndexBox& domain, const CutFaces& cut, int by) {
-    IndexBox box = domain;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (!cut[2 * axis]) box.min[int(axis)] -= by;
-        if (!cut[2 * axis + 1]) box.max[int(axis)] += by;
-    }
-    return box;
-}
-
 float reachOf(const BrickField& plain, const BrickField& textured) {
     float reach = 0;
     std::vector<float> a(std::size_t(plain.box().size().z)), b(a.size());
@@ -97,7 +77,7 @@ PairFields gatherPair(const AnalogyModelPair& pair, double scale, const RunConte
         throw Error(ErrorCode::ShapeMismatch, "the two models of the pair do not overlap: domains " +
                                                   boxText(pair.plain->domain) + " and " + boxText(other));
     PairFields fields;
-    fields.box = grown(domain, cut, kMostReach);
+    fields.box = grownBox(domain, cut, kMostReach);
     requireMemory(ctx, double(fields.box.volume()) * 12, "the pair", "use larger voxels or crop the pair");
     const auto gathered = [&](const LevelSet& model, const CutFaces& faces) {
         return std::make_shared<const BrickField>(

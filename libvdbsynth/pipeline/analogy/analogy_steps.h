@@ -2,6 +2,7 @@
 #include "libvdbsynth/analogy/volume_analogy.h"
 #include "libvdbsynth/distance/close_field.h"
 #include "libvdbsynth/pipeline/analogy/analogy.h"
+#include "libvdbsynth/pipeline/convert/domain_faces.h"
 
 #include <memory>
 
@@ -23,11 +24,6 @@ inline constexpr int kMostReach = 40;  ///< [voxels] farthest that a texture may
 
 /// @throw Error ShapeMismatch unless the models of a pair have the same voxels
 void requireOnePlace(const AnalogyModelPair& pair);
-
-/// The faces of its recorded domain that a solid passes through.
-CutFaces facesTouched(const LevelSet& model);
-/// A domain with a margin at the faces that are not cuts.
-IndexBox grown(const IndexBox& domain, const CutFaces& cut, int by);
 
 /// A pair as fields over one box, at the texture's scale.
 struct PairFields {

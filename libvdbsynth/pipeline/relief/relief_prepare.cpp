@@ -1,0 +1,144 @@
+// The target of a relief.
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/grid/field_sampling.h"
+#include "libvdbsynth/math/trigonometry.h"
+#include "libvdbsynth/pipeline/convert/domain_faces.h"
+#include "libvdbsynth/pipeline/convert/model.h"
+#include "libvdbsynth/pipeline/relief/relief_steps.h"
+#include "libvdbsynth/pipeline/texture/texture_steps.h"
+#include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/control_grids.h"
+#include "libvdbsynth/vdb/grid_reader.h"
+
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vdbsynth {
+namespace {
+
+// 0 to 1 with level ends.
+float smoothStep(float t) {
+    t = std::clamp(t, 0.f, 1.f);
+    return t * t * (3 - 2 * t);
+}
+
+void multiply(std::vector<float>& strength, const std::vector<Vec3f>& point, const BrickField& weight) {
+    for (std::size_t i = 0; i < point.size(); ++i)
+        strength[i] *= std::clamp(sampleTrilinear(weight, point[i]), 0.f, 1.f);
+}
+
+// What the mask's model leaves of the relief at every site.
+void maskByModel(const ReliefOptions& options, PreparedTarget& prepared, const RunContext& ctx) {
+    const double voxel = voxelSizeOf(*options.maskModel->grid);
+    const double fade = std::max(options.fade, 1e-6 * voxel);
+    const LevelSet model =
+        withHalfWidth(*options.maskModel, std::max(double(kHalfWidth), options.fade / voxel + 2), ctx);
+    const auto distance = scalarReader(*model.grid, GridSampling::Linear, "`mask`");
+    for (std::size_t i = 0; i < prepared.target.point.size(); ++i) {
+        const double inside = -distance(prepared.place.world(prepared.target.point[i])).value.z;
+        prepared.target.strength[i] *= smoothStep(float(inside / fade));
+    }
+}
+
+void applyMasks(const LevelSet& model, const ReliefOptions& options, PreparedTarget& prepared,
+                const RunContext& ctx) {
+    if (!options.mask && !options.maskModel) return;
+    ReliefTarget& target = prepared.target;
+    target.strength.assign(target.point.size(), 1);
+    if (options.mask) {
+        ControlFrame frame;
+        frame.box = frame.period = {target.distance.box().min + prepared.corner,
+                                    target.distance.box().max + prepared.corner};
+        frame.like = model.grid.get();
+        BrickField weight = sampledWeight(*options.mask, frame, 1, "`mask`", ctx);
+        weight.translate(target.distance.box().min - weight.box().min);
+        multiply(target.strength, target.point, weight);
+    }
+    if (options.maskModel) maskByModel(options, prepared, ctx);
+}
+
+}  // namespace
+
+Vec3f VoxelPlace::fromWorldDirection(const Vec3d& direction) const {
+    // The transform is a rotation times the voxel's size, so its transpose goes back.
+    Vec3f voxel;
+    for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r) voxel[c] += float(toWorld[std::size_t(4 * c + r)] * direction[r]);
+    return normalized(voxel);
+}
+
+VoxelPlace placeOf(const openvdb::FloatGrid& grid, const Index3& corner) {
+    Affine shift = kIdentity;
+    for (int axis = 0; axis < 3; ++axis) shift[std::size_t(12 + axis)] = corner[axis];
+    return {multiplied(transformOf(grid), shift), voxelSizeOf(grid)};
+}
+
+TextureShape shapeAt(const std::vector<Vec3f>& point, const std::vector<Vec3f>& normal,
+                     const VoxelPlace& place) {
+    TextureShape shape;
+    shape.origin = place.world({0, 0, 0});
+    for (std::size_t i = 0; i < point.size(); ++i) {
+        shape.site.push_back(cast<float>(place.world(point[i]) - shape.origin));
+        const Vec3d tip = place.world(point[i] + normal[i]) - place.world(point[i]);
+        shape.normal.push_back(cast<float>(normalized(tip)));
+    }
+    return shape;
+}
+
+std::vector<Vec3f> directionsAt(const std::vector<Vec3f>& point, const std::vector<Vec3f>& normal,
+                                const VoxelPlace& place, const DirectionSource& source,
+                                const RunContext& ctx) {
+    std::vector<Vec3f> directions = siteDirections(shapeAt(point, normal, place), source, ctx);
+    for (Vec3f& d : directions)
+        if (dot(d, d) > 0) d = place.fromWorldDirection(cast<double>(d));
+    return directions;
+}
+
+double fittingFactor(const ReliefTarget& target, const VoxelPlace& place, const Vec3d& axis, double period) {
+    const Vec3f along = place.fromWorldDirection(axis);
+    Vec3f low = target.point[0], high = low;
+    for (const Vec3f& p : target.point)
+        for (int a = 0; a < 3; ++a) {
+            low[a] = std::min(low[a], p[a]);
+            high[a] = std::max(high[a], p[a]);
+        }
+    const Vec3f middle = (low + high) * 0.5f;
+    // Where the surface runs along the axis, as on a cylinder's side.
+    double sum = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < target.point.size(); ++i) {
+        if (std::abs(dot(target.normal[i], along)) > 0.3f) continue;
+        const Vec3f off = target.point[i] - middle;
+        sum += double(length(off - along * dot(off, along)));
+        ++count;
+    }
+    if (count == 0) return 1;
+    const double periods = 2 * kPi * sum / double(count) / period;
+    return periods / std::max(1.0, std::round(periods));
+}
+
+PreparedTarget preparedTarget(const LevelSet& model, float reach, const ReliefLabels& labels,
+                              const ReliefOptions& options, const RunContext& ctx) {
+    PreparedTarget prepared;
+    prepared.cut = facesTouched(model);
+    const IndexBox box = grownBox(model.domain, prepared.cut, int(std::ceil(reach)) + 4);
+    prepared.corner = box.min;
+    requireMemory(ctx, double(box.volume()) * 0.05 + 60.0 * double(reach) * double(activeVoxels(*model.grid)),
+                  "a box of " + boxText(box), "use larger voxels or a smaller `strength`");
+    prepared.target.distance = gatherWideBand(*model.grid, box, prepared.cut, reach, ctx);
+    prepared.target.distance.translate(Index3{0, 0, 0} - prepared.target.distance.box().min);
+    prepared.target.reach = reach;
+    makeSites(prepared.target, ctx);
+    prepared.place = placeOf(*model.grid, prepared.corner);
+    const ReliefTarget& target = prepared.target;
+    if (options.direction)
+        prepared.target.direction =
+            directionsAt(target.point, target.normal, prepared.place, *options.direction, ctx);
+    if (labels) prepared.target.label = labels(shapeAt(target.point, target.normal, prepared.place));
+    applyMasks(model, options, prepared, ctx);
+    return prepared;
+}
+
+}  // namespace vdbsynth

@@ -1,0 +1,225 @@
+#include "tools/vdb_synth/command.h"
+#include "tools/vdb_synth/direction_option.h"
+#include "tools/vdb_synth/option_value.h"
+#include "tools/vdb_synth/relief_base_option.h"
+#include "tools/vdb_synth/texture_region_option.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/io/path.h"
+#include "libvdbsynth/io/raster_file.h"
+#include "libvdbsynth/pipeline/convert/outputs.h"
+#include "libvdbsynth/pipeline/relief/relief.h"
+#include "libvdbsynth/pipeline/texture/texture_sample.h"
+#include "libvdbsynth/vdb/control_grids.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace vdbsynth::cli {
+namespace {
+
+bool isPicture(const std::string& path) {
+    const std::string extension = readExtensionOf(path);
+    for (const char* known : {"png", "jpg", "jpeg", "pgm", "ppm", "pnm", "exr", "tif", "tiff"})
+        if (extension == known) return true;
+    return false;
+}
+
+ReliefOptions parseOptions(const Arguments& arguments) {
+    ReliefOptions options;
+    options.method = arguments.text("method") == "paper" ? ReliefMethod::Paper : ReliefMethod::Default;
+    options.base = baseKindOf(arguments.text("base"));
+    options.baseRadius = arguments.real("base-radius");
+    options.scale = arguments.real("scale");
+    options.strength = arguments.real("strength");
+    options.minWall = arguments.real("min-wall");
+    options.neighbourhood = arguments.real("neighbourhood");
+    options.top = arguments.real("top");
+    options.fade = arguments.real("fade");
+    options.fit = arguments.has("fit");
+    options.halfWidth = float(arguments.real("half-width"));
+    options.synthesis.levels = arguments.whole("levels");
+    options.synthesis.passes = arguments.has("draft") ? 0 : arguments.whole("passes");
+    options.synthesis.coherence = arguments.real("coherence");
+    options.synthesis.uniformity = arguments.real("uniformity");
+    options.synthesis.histogram = arguments.real("histogram");
+    options.synthesis.maxRotation = arguments.real("max-rotation");
+    if (arguments.has("draft") && arguments.has("passes"))
+        throw Error(ErrorCode::InvalidOption, "--draft and --passes: give one of them");
+    if (arguments.has("max-rotation") && arguments.has("direction"))
+        throw Error(ErrorCode::InvalidOption,
+                    "--max-rotation: has no effect with --direction, which pieces follow within 8 degrees");
+    const bool paper = options.method == ReliefMethod::Paper;
+    for (const char* name : {"neighbourhood", "top"})
+        if (arguments.has(name) && !paper)
+            throw Error(ErrorCode::InvalidOption,
+                        std::string("--") + name + ": has no effect without --method paper");
+    for (const char* name :
+         {"levels", "passes", "draft", "coherence", "uniformity", "histogram", "max-rotation", "min-wall"})
+        if (arguments.has(name) && paper)
+            throw Error(ErrorCode::InvalidOption,
+                        std::string("--") + name + ": has no effect with --method paper");
+    return options;
+}
+
+// What only pictures, or only scans, take.
+void checkSamples(const Arguments& arguments) {
+    const auto first = arguments.inputs.begin(), last = arguments.inputs.end() - 1;
+    const auto pictures = std::count_if(first, last, isPicture);
+    if (pictures == 0)
+        for (const char* name : {"height", "pixel-size", "tile", "fit"})
+            if (arguments.has(name))
+                throw Error(ErrorCode::InvalidOption,
+                            std::string("--") + name + ": has no effect, as no SAMPLE is a picture");
+    if (pictures == last - first)
+        for (const char* name : {"base", "base-radius", "exemplar-direction", "exemplar-resolution"})
+            if (arguments.has(name))
+                throw Error(ErrorCode::InvalidOption,
+                            std::string("--") + name + ": has no effect on pictures, only on scans");
+    if (pictures > 0 && arguments.text("method") == "paper")
+        throw Error(ErrorCode::InvalidOption, "--method paper: takes scans, no pictures of heights");
+    if (last - first > 1 && !arguments.has("region"))
+        throw Error(ErrorCode::InvalidOption,
+                    arguments.inputs[1] +
+                        ": several samples need --region auto or --region MODEL, which say "
+                        "where each goes");
+    if (last - first == 1 && arguments.has("region"))
+        throw Error(ErrorCode::InvalidOption, "--region: needs several samples");
+}
+
+// The mean of a picture's channels, as heights.
+SampleImage heightsOf(const TextureSample& sample) {
+    SampleImage heights{sample.image.width, sample.image.height, 1, sample.image.tileable, {},
+                        sample.image.valid};
+    const std::size_t channels = std::size_t(sample.image.channels);
+    for (std::size_t i = 0; i < sample.image.texels(); ++i) {
+        float sum = 0;
+        for (std::size_t c = 0; c < channels; ++c) sum += sample.image.values[i * channels + c];
+        heights.values.push_back(sum / float(channels));
+    }
+    return heights;
+}
+
+struct Samples {
+    std::vector<LevelSet> scans;
+    std::vector<ReliefSource> sources;
+};
+
+Samples loadSamples(Run& run) {
+    const Arguments& arguments = run.arguments;
+    const std::size_t count = arguments.inputs.size() - 1;
+    const std::string tile = arguments.text("tile");
+    const Tiling tiling = tile == "yes" ? Tiling::Yes : tile == "no" ? Tiling::No : Tiling::Auto;
+    ModelOptions model = run.modelOptions();
+    model.voxelSize = 0;
+    model.resolution = arguments.whole("exemplar-resolution");
+    model.grid.clear();
+    Samples samples;
+    samples.scans.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::string& path = arguments.inputs[i];
+        ReliefSource source;
+        if (isPicture(path)) {
+            run.noteInput(path);
+            source.heights = heightsOf(readTextureSamples({{path, {}}}, tiling, run.context).front());
+            source.height = arguments.real("height");
+            const std::vector<double> sides = arguments.lengths("pixel-size");
+            if (sides.size() > 1 && sides[0] != sides[1])
+                throw Error(ErrorCode::InvalidOption,
+                            "--pixel-size: pixels of a relief are squares; give one side");
+            source.pixelSize = sides.empty() ? 0 : sides[0];
+        } else {
+            samples.scans.push_back(run.load(path, model));
+            source.scan = &samples.scans.back();
+        }
+        samples.sources.push_back(std::move(source));
+    }
+    return samples;
+}
+
+struct Mask {
+    LevelSet model;
+    bool isModel = false;
+};
+
+Mask loadMask(Run& run, double voxelSize, ReliefOptions& options) {
+    Mask mask;
+    if (!run.arguments.has("mask")) {
+        if (options.fade > 0) throw Error(ErrorCode::InvalidOption, "--fade: needs a model as --mask");
+        return mask;
+    }
+    const std::string text = run.arguments.text("mask");
+    if (namesGrid(text) && !splitGridPath(text).grid.empty()) {
+        if (options.fade > 0)
+            throw Error(ErrorCode::InvalidOption, "--fade: has no effect on a grid of weights as --mask");
+        options.mask = run.loadGrid("mask");
+        return mask;
+    }
+    ModelOptions model;
+    if (extensionOf(text) != "vdb") model.voxelSize = voxelSize;
+    mask.model = run.load(text, model);
+    mask.isModel = true;
+    return mask;
+}
+
+void report(Run& run, const ReliefResult& result, const ReliefOptions& options) {
+    nlohmann::json levels = nlohmann::json::array();
+    for (const CoordinateLevelStats& level : result.levels)
+        levels.push_back({{"sites", level.sites},
+                          {"step_texels", level.step},
+                          {"coherent_share", level.coherent},
+                          {"feature_distance", level.cost}});
+    run.count("levels", levels);
+    run.count("texel", result.texel);
+    if (result.baseRadius > 0) run.count("base_radius", result.baseRadius);
+    run.count("flattened_share", result.covered);
+    run.count("folds", result.folds);
+    run.count("singularities", result.singularities.size());
+    run.count("unchanged_share", result.unchanged);
+    if (options.fit) run.count("fitted", result.fitted);
+    if (options.method == ReliefMethod::Paper) run.count("mismatch", result.mismatch);
+    message(run.context, MessageLevel::Note,
+            "a voxel of the sample is " + roundedText(result.texel, 4) + " wide on the target (world)" +
+                (result.folds ? "; the relief folds, so its distances were copied, overhangs included" : ""));
+    run.describe(result.model);
+}
+
+void relief(Run& run) {
+    const Arguments& arguments = run.arguments;
+    run.requireInputs(2, 33);
+    ReliefOptions options = parseOptions(arguments);
+    checkSamples(arguments);
+    const std::vector<std::string> paths = run.outputPaths();
+    requireOutputPaths(paths);
+    for (const std::string& path : arguments.inputs) requireModelPath(path);
+    run.reserveOutputs();
+    const Samples samples = loadSamples(run);
+    ModelOptions model = run.modelOptions();
+    const LevelSet target = run.load(arguments.inputs.back(), model);
+    const Mask mask = loadMask(run, voxelSizeOf(*target.grid), options);
+    if (mask.isModel) options.maskModel = &mask.model;
+    if (arguments.has("direction")) options.direction = directionOf(run, "direction");
+    if (arguments.has("exemplar-direction"))
+        options.exemplarDirection = directionOf(run, "exemplar-direction");
+    ReliefLabels labels;
+    if (samples.sources.size() > 1)
+        labels = [&](const TextureShape& sites) { return regionLabels(run, sites, samples.sources.size()); };
+    const ReliefResult result = transferRelief(samples.sources, target, labels, options, run.context);
+    ModelOutputOptions outputs;
+    outputs.adaptivity = arguments.real("adaptivity");
+    outputs.extraGrids = result.sources;
+    outputs.metadata = run.metadata();
+    writeModel(result.model, paths, outputs, run.outputs(), run.context);
+    report(run, result, options);
+    run.finish();
+}
+
+}  // namespace
+
+const Command kRelief{"relief", "relief SAMPLE... TARGET -o OUT [options]",
+                      "Take the relief off one surface, or a picture, and grow it on another",
+                      "vdb_synth relief dragon.off 3holes.off -o carved.obj", relief};
+
+}  // namespace vdbsynth::cli

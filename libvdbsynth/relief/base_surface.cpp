@@ -43,10 +43,11 @@ BrickField overBox(const BrickField& field, const IndexBox& box, float limit, co
 }
 
 // The reach that holds the relief, of which a thousandth may stand out.
-void measureRelief(BaseSurface& base, std::vector<float> distances, double radius) {
+void measureRelief(BaseSurface& base, std::vector<float> distances, const BaseOptions& options) {
     std::sort(distances.begin(), distances.end());
     base.amplitude = double(distances[distances.size() - 1 - distances.size() / 1000]);
-    base.reach = float(std::clamp(1.25 * base.amplitude + 2, 3.0, 1.5 * radius + 4));
+    base.reach =
+        std::max(options.reach, float(std::min(1.25 * base.amplitude + 2, 1.5 * options.radius + 4)));
     const auto above = std::lower_bound(distances.begin(), distances.end(), base.reach - 1);
     base.beyond = double(distances.end() - above) / double(distances.size());
 }
@@ -58,6 +59,8 @@ void validate(const BaseOptions& options) {
                   "from 1 to 1000 [voxels]");
     requireOption(options.band >= 1.5f && options.band <= 300, "band", roundedText(double(options.band), 6),
                   "from 1.5 to 300 [voxels]");
+    requireOption(options.reach >= 3 && options.reach <= 150, "reach", roundedText(double(options.reach), 6),
+                  "from 3 to 150 [voxels]");
 }
 
 int baseMargin(double radius) {
@@ -68,7 +71,7 @@ BaseSurface baseFromField(const BrickField& scan, const SmoothField& smooth, con
                           const BaseOptions& options, const RunContext& ctx) {
     BaseSurface base;
     base.radius = options.radius;
-    measureRelief(base, distancesFromBase(smooth, surface, ctx), options.radius);
+    measureRelief(base, distancesFromBase(smooth, surface, ctx), options);
     RebuildOptions rebuild;
     rebuild.halfWidth = base.reach;
     rebuild.keepDistances = true;

@@ -18,6 +18,7 @@ struct BaseOptions {
     double radius = 6;  ///< [voxels] 1..1000: standard deviation of the Gaussian; of waves as long as
                         ///< kCutOff * radius half goes to the base (Gaussian)
     float band = 3;     ///< [voxels] where the scan's own distances end, at least 1.5
+    float reach = 3;    ///< [voxels] 3..150: the least that distances of the result are known for
 };
 
 /// Cut-off wavelength of a Gaussian over its standard deviation, 2 pi / sqrt(2 ln 2) [iso16610].

@@ -83,6 +83,9 @@ TEST_CASE("baseSurface: options and scans out of range are refused", "[relief][e
     BaseOptions options;
     options.band = 1;
     CHECK(test::contains(test::thrownBy([&] { baseSurface(scan, options); }).message, "`band`"));
+    options = {};
+    options.reach = 2;
+    CHECK(test::contains(test::thrownBy([&] { baseSurface(scan, options); }).message, "`reach`"));
     const BrickField nothing(IndexBox::fromSize({20, 20, 20}), 3.f);
     CHECK(test::thrownBy([&] { baseSurface(nothing); }).code == int(ErrorCode::EmptyInput));
     const test::Thrown gone = test::thrownBy([&] { baseSurface(test::ballField(3, 60), withRadius(11)); });

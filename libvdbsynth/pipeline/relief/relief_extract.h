@@ -37,9 +37,9 @@ struct ReliefExtraction {
                      ///< of the base, active in the base's band over the domain
     GridPtr reliefVector;  ///< Vec3S `relief_vector` [world], from the base's nearest point to the scan's
                            ///< surface; active only where the relief folds; null if it does so nowhere
-    LevelSet surface;             ///< base + strength * relief; without a grid if no strength was given
-    double radius = 0;            ///< [world] of the base
-    BaseScale scale;              ///< radii that were tried; empty if one was given
+    LevelSet surface;      ///< base + strength * relief; without a grid if no strength was given
+    double radius = 0;     ///< [world] of the base
+    BaseScale scale;       ///< radii that were tried; empty if one was given
     ReliefStatistics statistics;  ///< [voxels]
     double voxelSize = 1;         ///< [world]
     SurfaceCounts scanCounts, baseCounts;

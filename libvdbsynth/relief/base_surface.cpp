@@ -42,6 +42,19 @@ BrickField overBox(const BrickField& field, const IndexBox& box, float limit, co
     });
 }
 
+SmoothField smoothOf(const SmoothField& distances, const BaseOptions& options, const RunContext& ctx) {
+    switch (options.kind) {
+        case BaseKind::Flow:
+            return flowedDistances(distances, options.radius, ctx);
+        case BaseKind::Normals:
+            return distancesByNormals(distances, options.radius, ctx);
+        case BaseKind::Quadrics:
+            return distancesByQuadrics(distances, options.radius, ctx);
+        default:
+            return smoothedDistances(distances, options.kind, options.radius, ctx);
+    }
+}
+
 // The reach that holds the relief, of which a thousandth may stand out.
 void measureRelief(BaseSurface& base, std::vector<float> distances, const BaseOptions& options) {
     std::sort(distances.begin(), distances.end());
@@ -94,9 +107,10 @@ BaseSurface baseSurface(const BrickField& scan, const BaseOptions& options, cons
     if (surface.faceCount() == 0) throw Error(ErrorCode::EmptyInput, "the scan has no surface");
     const int step = smoothingStep(options.radius);
     const float reach = kRadiiReached * float(options.radius);
-    const SmoothField distances = latticeDistances(scan, surface, step, reach, options.band, ctx);
+    const SmoothField distances =
+        latticeDistances(scan, surface, step, reach, options.band, ctx, options.kind != BaseKind::Normals);
     stage.advance();
-    const SmoothField smooth = smoothedDistances(distances, options.kind, options.radius, ctx);
+    const SmoothField smooth = smoothOf(distances, options, ctx);
     stage.advance();
     BaseSurface base = baseFromField(scan, smooth, surface, options, ctx);
     stage.advance();

@@ -48,6 +48,13 @@ struct BaseSurface {
 /// radii first (four, and one for the relief), as a mean over a band that ends too early moves the surface.
 /// From a radius of 5 on the means are taken on a lattice of every second to fourth voxel, of which each near
 /// the surface holds the mean of the voxels around it, and interpolated by cubic polynomials (Catmull-Rom).
+/// Flow moves the surface by its mean curvature for the time radius^2 / 2, in stable steps. Normals: means of
+/// the surface's normals, first Gaussian, then four rounds over those normals whose means differ by under 41
+/// degrees, so that edges return [zhang2015]; then the surface flows for radius^2 until it has these normals
+/// [tasdizen2003]. Quadrics: of the points within 2.5 radii a quadric over their mean normal's plane,
+/// weighted by a Gaussian; the base is as far from the scan as the quadric is from its middle [breckon2006].
+/// All three on the same lattice.
+///
 /// Then the zero level of B is the base, with distances to first order B / |grad B| where they agree with
 /// those to its mesh (distance/rebuild_band.h).
 ///

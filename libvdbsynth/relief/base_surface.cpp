@@ -5,6 +5,7 @@
 #include "libvdbsynth/distance/rebuild_band.h"
 #include "libvdbsynth/distance/widen_band.h"
 #include "libvdbsynth/distance/zero_level.h"
+#include "libvdbsynth/grid/field_sampling.h"
 #include "libvdbsynth/relief/base_surface_steps.h"
 
 #include <algorithm>
@@ -61,8 +62,15 @@ void measureRelief(BaseSurface& base, std::vector<float> distances, const BaseOp
     base.amplitude = double(distances[distances.size() - 1 - distances.size() / 1000]);
     base.reach =
         std::max(options.reach, float(std::min(1.25 * base.amplitude + 2, 1.5 * options.radius + 4)));
-    const auto above = std::lower_bound(distances.begin(), distances.end(), base.reach - 1);
-    base.beyond = double(distances.end() - above) / double(distances.size());
+}
+
+// The share of the scan's surface that is as far from the base as distances are known. Parts that the base
+// lost are: only its own distances tell, as a smoothed field is nowhere far from zero there.
+double shareBeyond(const BaseSurface& base, const Mesh& surface) {
+    std::size_t beyond = 0;
+    for (const Vec3f& p : surface.points)
+        beyond += std::abs(sampleTrilinear(base.distance, p)) > base.reach - 1;
+    return double(beyond) / double(surface.points.size());
 }
 
 }  // namespace
@@ -96,6 +104,7 @@ BaseSurface baseFromField(const BrickField& scan, const SmoothField& smooth, con
     if (zeroLevel(base.distance, scan.box(), Facing::Outward, ctx).faceCount() == 0)
         throw Error(ErrorCode::EmptyInput, "`radius` " + roundedText(options.radius, 4) +
                                                " voxels: no base is left of the model; use a smaller one");
+    base.beyond = shareBeyond(base, surface);
     return base;
 }
 

@@ -37,7 +37,7 @@ struct BaseSurface {
     double radius = 6;     ///< [voxels] of the base's options
     float reach = 3;       ///< [voxels] that both are known for; holds the relief and two voxels
     double amplitude = 0;  ///< [voxels] distance from the base that a thousandth of the scan exceeds
-    double beyond = 0;     ///< share of the scan's surface that is farther away than the reach
+    double beyond = 0;     ///< share of the scan's surface that is farther away than the reach: lost parts
 };
 
 /// The smooth surface under a relief.

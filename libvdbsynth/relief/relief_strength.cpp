@@ -20,12 +20,16 @@ BaseSurface withReach(const BaseSurface& base, float reach, const RunContext& ct
     return wide;
 }
 
+constexpr float kExact = 0.1f;  // [voxels] by which base + relief may miss the scan
+
 float mixed(float distance, float scan, float strength) {
     return (1 - strength) * distance + strength * scan;
 }
 
 float displaced(const ReliefPoint& relief, float distance, float scan, float strength) {
-    if (relief.folds) return mixed(distance, scan, strength);
+    // A height that puts a place on the wrong side of the scan is none.
+    const bool wrong = (distance < relief.height) != (scan < 0) && std::abs(scan) > kExact;
+    if (relief.folds || wrong) return mixed(distance, scan, strength);
     const float steep = std::max(0.f, 1 / (relief.slope * relief.slope) - 1) * strength * strength;
     return (distance - strength * relief.height) / std::sqrt(1 + steep);
 }

@@ -13,20 +13,53 @@ namespace vdbsynth {
 namespace {
 
 constexpr double kSmallest = 2;            // [voxels] first radius
+constexpr double kSmallestShare = 0.01;    // of the longest side: finer ones take long
 constexpr double kNoise = 1. / 3;          // [voxels] deviation that a lattice may make
 constexpr double kNearlySmallest = 0.25;   // of the growth
 constexpr double kGap = 2;                 // growth under which there is a gap
 constexpr double kShareOfLongest = 0.025;  // the radius without a gap
 constexpr double kStepRadius = 1.4;        // samples a radius: variances need no more
 
-double deviationAt(const BrickField& scan, const Mesh& surface, double radius, float band,
-                   const RunContext& ctx) {
-    const int step = std::clamp(int(radius / kStepRadius), 1, 4);
-    const SmoothField distances = latticeDistances(scan, surface, step, 5 * float(radius), band, ctx);
+int stepOf(double radius) {
+    return std::clamp(int(radius / kStepRadius), 1, 4);
+}
+
+double deviationAt(const SmoothField& distances, const Mesh& surface, double radius, const RunContext& ctx) {
     const SmoothField smooth = smoothedDistances(distances, BaseKind::Twicing, radius, ctx);
     double sum = 0;
     for (const float h : distancesFromBase(smooth, surface, ctx)) sum += double(h) * double(h);
     return std::sqrt(sum / double(surface.points.size()));
+}
+
+// Half an octave apart.
+std::vector<double> radiiOf(double longest) {
+    std::vector<double> radii;
+    const double smallest = std::max(kSmallest, longest * kSmallestShare);
+    for (int k = 0;; ++k) {
+        const double radius = smallest * double(1 << (k / 2)) * (k % 2 ? std::sqrt(2.0) : 1);
+        if (radius > largestBaseRadius(longest)) return radii;
+        radii.push_back(radius);
+    }
+}
+
+// Of radii with one step the distances are the same.
+std::vector<double> deviationsOf(const BrickField& scan, const Mesh& surface,
+                                 const std::vector<double>& radii, float band, const RunContext& ctx) {
+    Stage stage(ctx, "finding the relief's scale", std::max<std::size_t>(1, radii.size()));
+    std::vector<double> deviations;
+    SmoothField distances;
+    distances.step = 0;
+    for (std::size_t i = 0; i < radii.size(); ++i) {
+        const int step = stepOf(radii[i]);
+        if (step != distances.step) {
+            std::size_t last = i;
+            while (last + 1 < radii.size() && stepOf(radii[last + 1]) == step) ++last;
+            distances = latticeDistances(scan, surface, step, 5 * float(radii[last]), band, ctx);
+        }
+        deviations.push_back(deviationAt(distances, surface, radii[i], ctx));
+        stage.advance();
+    }
+    return deviations;
 }
 
 // Growth of the variance over the octave around each radius but the first and last.
@@ -70,16 +103,8 @@ BaseScale findBaseRadius(const BrickField& scan, double longest, float band, con
     const Mesh surface = zeroLevel(scan, scan.box(), Facing::Outward, ctx);
     if (surface.faceCount() == 0) throw Error(ErrorCode::EmptyInput, "the scan has no surface");
     BaseScale scale;
-    for (int k = 0;; ++k) {
-        const double radius = kSmallest * double(1 << (k / 2)) * (k % 2 ? std::sqrt(2.0) : 1);
-        if (radius > largestBaseRadius(longest)) break;
-        scale.radii.push_back(radius);
-    }
-    Stage stage(ctx, "finding the relief's scale", std::max<std::size_t>(1, scale.radii.size()));
-    for (const double radius : scale.radii) {
-        scale.deviation.push_back(deviationAt(scan, surface, radius, band, ctx));
-        stage.advance();
-    }
+    scale.radii = radiiOf(longest);
+    scale.deviation = deviationsOf(scan, surface, scale.radii, band, ctx);
     choose(scale, longest);
     return scale;
 }

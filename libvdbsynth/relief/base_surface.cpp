@@ -5,6 +5,7 @@
 #include "libvdbsynth/distance/rebuild_band.h"
 #include "libvdbsynth/distance/widen_band.h"
 #include "libvdbsynth/distance/zero_level.h"
+#include "libvdbsynth/grid/field_sampling.h"
 #include "libvdbsynth/relief/base_surface_steps.h"
 
 #include <algorithm>
@@ -42,13 +43,34 @@ BrickField overBox(const BrickField& field, const IndexBox& box, float limit, co
     });
 }
 
+SmoothField smoothOf(const SmoothField& distances, const BaseOptions& options, const RunContext& ctx) {
+    switch (options.kind) {
+        case BaseKind::Flow:
+            return flowedDistances(distances, options.radius, ctx);
+        case BaseKind::Normals:
+            return distancesByNormals(distances, options.radius, ctx);
+        case BaseKind::Quadrics:
+            return distancesByQuadrics(distances, options.radius, ctx);
+        default:
+            return smoothedDistances(distances, options.kind, options.radius, ctx);
+    }
+}
+
 // The reach that holds the relief, of which a thousandth may stand out.
-void measureRelief(BaseSurface& base, std::vector<float> distances, double radius) {
+void measureRelief(BaseSurface& base, std::vector<float> distances, const BaseOptions& options) {
     std::sort(distances.begin(), distances.end());
     base.amplitude = double(distances[distances.size() - 1 - distances.size() / 1000]);
-    base.reach = float(std::clamp(1.25 * base.amplitude + 2, 3.0, 1.5 * radius + 4));
-    const auto above = std::lower_bound(distances.begin(), distances.end(), base.reach - 1);
-    base.beyond = double(distances.end() - above) / double(distances.size());
+    base.reach =
+        std::max(options.reach, float(std::min(1.25 * base.amplitude + 2, 1.5 * options.radius + 4)));
+}
+
+// The share of the scan's surface that is as far from the base as distances are known. Parts that the base
+// lost are: only its own distances tell, as a smoothed field is nowhere far from zero there.
+double shareBeyond(const BaseSurface& base, const Mesh& surface) {
+    std::size_t beyond = 0;
+    for (const Vec3f& p : surface.points)
+        beyond += std::abs(sampleTrilinear(base.distance, p)) > base.reach - 1;
+    return double(beyond) / double(surface.points.size());
 }
 
 }  // namespace
@@ -58,6 +80,8 @@ void validate(const BaseOptions& options) {
                   "from 1 to 1000 [voxels]");
     requireOption(options.band >= 1.5f && options.band <= 300, "band", roundedText(double(options.band), 6),
                   "from 1.5 to 300 [voxels]");
+    requireOption(options.reach >= 3 && options.reach <= 150, "reach", roundedText(double(options.reach), 6),
+                  "from 3 to 150 [voxels]");
 }
 
 int baseMargin(double radius) {
@@ -68,7 +92,7 @@ BaseSurface baseFromField(const BrickField& scan, const SmoothField& smooth, con
                           const BaseOptions& options, const RunContext& ctx) {
     BaseSurface base;
     base.radius = options.radius;
-    measureRelief(base, distancesFromBase(smooth, surface, ctx), options.radius);
+    measureRelief(base, distancesFromBase(smooth, surface, ctx), options);
     RebuildOptions rebuild;
     rebuild.halfWidth = base.reach;
     rebuild.keepDistances = true;
@@ -80,6 +104,7 @@ BaseSurface baseFromField(const BrickField& scan, const SmoothField& smooth, con
     if (zeroLevel(base.distance, scan.box(), Facing::Outward, ctx).faceCount() == 0)
         throw Error(ErrorCode::EmptyInput, "`radius` " + roundedText(options.radius, 4) +
                                                " voxels: no base is left of the model; use a smaller one");
+    base.beyond = shareBeyond(base, surface);
     return base;
 }
 
@@ -91,9 +116,10 @@ BaseSurface baseSurface(const BrickField& scan, const BaseOptions& options, cons
     if (surface.faceCount() == 0) throw Error(ErrorCode::EmptyInput, "the scan has no surface");
     const int step = smoothingStep(options.radius);
     const float reach = kRadiiReached * float(options.radius);
-    const SmoothField distances = latticeDistances(scan, surface, step, reach, options.band, ctx);
+    const SmoothField distances =
+        latticeDistances(scan, surface, step, reach, options.band, ctx, options.kind != BaseKind::Normals);
     stage.advance();
-    const SmoothField smooth = smoothedDistances(distances, options.kind, options.radius, ctx);
+    const SmoothField smooth = smoothOf(distances, options, ctx);
     stage.advance();
     BaseSurface base = baseFromField(scan, smooth, surface, options, ctx);
     stage.advance();

@@ -18,6 +18,7 @@ struct BaseOptions {
     double radius = 6;  ///< [voxels] 1..1000: standard deviation of the Gaussian; of waves as long as
                         ///< kCutOff * radius half goes to the base (Gaussian)
     float band = 3;     ///< [voxels] where the scan's own distances end, at least 1.5
+    float reach = 3;    ///< [voxels] 3..150: the least that distances of the result are known for
 };
 
 /// Cut-off wavelength of a Gaussian over its standard deviation, 2 pi / sqrt(2 ln 2) [iso16610].
@@ -36,7 +37,7 @@ struct BaseSurface {
     double radius = 6;     ///< [voxels] of the base's options
     float reach = 3;       ///< [voxels] that both are known for; holds the relief and two voxels
     double amplitude = 0;  ///< [voxels] distance from the base that a thousandth of the scan exceeds
-    double beyond = 0;     ///< share of the scan's surface that is farther away than the reach
+    double beyond = 0;     ///< share of the scan's surface that is farther away than the reach: lost parts
 };
 
 /// The smooth surface under a relief.
@@ -47,6 +48,13 @@ struct BaseSurface {
 /// radii first (four, and one for the relief), as a mean over a band that ends too early moves the surface.
 /// From a radius of 5 on the means are taken on a lattice of every second to fourth voxel, of which each near
 /// the surface holds the mean of the voxels around it, and interpolated by cubic polynomials (Catmull-Rom).
+/// Flow moves the surface by its mean curvature for the time radius^2 / 2, in stable steps. Normals: means of
+/// the surface's normals, first Gaussian, then four rounds over those normals whose means differ by under 41
+/// degrees, so that edges return [zhang2015]; then the surface flows for radius^2 until it has these normals
+/// [tasdizen2003]. Quadrics: of the points within 2.5 radii a quadric over their mean normal's plane,
+/// weighted by a Gaussian; the base is as far from the scan as the quadric is from its middle [breckon2006].
+/// All three on the same lattice.
+///
 /// Then the zero level of B is the base, with distances to first order B / |grad B| where they agree with
 /// those to its mesh (distance/rebuild_band.h).
 ///

@@ -67,9 +67,10 @@ int smoothingStep(double radius) {
 }
 
 SmoothField latticeDistances(const BrickField& scan, const Mesh& surface, int step, float reach, float band,
-                             const RunContext& ctx) {
+                             const RunContext& ctx, bool means) {
     if (step == 1) return {widenBand({scan, scan.box(), band}, reach, ctx), 1};
-    const BrickField exact = exactDistances(scan, surface, step, reach, ctx);
+    BrickField exact = exactDistances(scan, surface, step, reach, ctx);
+    if (!means) return {std::move(exact), step};
     // Far from the surface the distances bend so little that a mean of three samples is the same.
     const BrickField far = gaussianMean(exact, kStepsOfMean, ctx);
     const float side = float(step);

@@ -1,7 +1,12 @@
 #pragma once
 // What the files of base_surface and base_scale share.
 #include "libvdbsynth/geometry/mesh.h"
+#include "libvdbsynth/grid/voxel_table.h"
 #include "libvdbsynth/relief/base_surface.h"
+#include "libvdbsynth/surface/surface_shell.h"
+
+#include <functional>
+#include <vector>
 
 namespace vdbsynth {
 
@@ -15,14 +20,37 @@ struct SmoothField {
 int smoothingStep(double radius);
 
 /// Distances [voxels of the scan] on every step-th voxel, to `reach` voxels; with a step over 1 those near
-/// the surface are means over a Gaussian of step / 2.
+/// the surface are means over a Gaussian of step / 2, unless edges have to stay.
 /// @param surface  the scan's zero level, in voxels
 SmoothField latticeDistances(const BrickField& scan, const Mesh& surface, int step, float reach, float band,
-                             const RunContext& ctx);
+                             const RunContext& ctx, bool means = true);
 
 /// B of twicing, or the Gaussian mean, from latticeDistances.
 SmoothField smoothedDistances(const SmoothField& distances, BaseKind kind, double radius,
                               const RunContext& ctx);
+
+/// BaseKind::Flow: explicit steps of mean curvature flow, stable ones.
+SmoothField flowedDistances(const SmoothField& distances, double radius, const RunContext& ctx);
+/// BaseKind::Normals and BaseKind::Quadrics.
+SmoothField distancesByNormals(const SmoothField& distances, double radius, const RunContext& ctx);
+SmoothField distancesByQuadrics(const SmoothField& distances, double radius, const RunContext& ctx);
+
+BrickField scaledField(const BrickField& field, float by, const RunContext& ctx);
+/// exp(-squared / (2 radius^2))
+float spreadOf(float squared, double radius);
+
+/// Of one site of a shell.
+struct ShellNeighbour {
+    std::uint32_t site;
+    float squared;  ///< distance of their points
+};
+/// Calls visit(site, all sites whose voxels are within `reach`, itself included), from many threads.
+void forShellNeighbours(const SurfaceShell& shell, double reach, const RunContext& ctx,
+                        const std::function<void(std::size_t, const std::vector<ShellNeighbour>&)>& visit);
+/// Values of a shell at the nearest surface points of a band's voxels.
+/// @param unit  distances in samples
+std::vector<Vec3f> extendedOverBand(const BrickField& unit, const VoxelTable& band, const SurfaceShell& shell,
+                                    const std::vector<Vec3f>& values, const RunContext& ctx);
 
 /// The field at every voxel of a box, by cubic polynomials, clamped to -limit..limit.
 BrickField refined(const SmoothField& smooth, const IndexBox& box, float limit, const RunContext& ctx);

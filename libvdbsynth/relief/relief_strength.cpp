@@ -20,8 +20,16 @@ BaseSurface withReach(const BaseSurface& base, float reach, const RunContext& ct
     return wide;
 }
 
+constexpr float kExact = 0.1f;  // [voxels] by which base + relief may miss the scan
+
+float mixed(float distance, float scan, float strength) {
+    return (1 - strength) * distance + strength * scan;
+}
+
 float displaced(const ReliefPoint& relief, float distance, float scan, float strength) {
-    if (relief.folds) return (1 - strength) * distance + strength * scan;
+    // A height that puts a place on the wrong side of the scan is none.
+    const bool wrong = (distance < relief.height) != (scan < 0) && std::abs(scan) > kExact;
+    if (relief.folds || wrong) return mixed(distance, scan, strength);
     const float steep = std::max(0.f, 1 / (relief.slope * relief.slope) - 1) * strength * strength;
     return (distance - strength * relief.height) / std::sqrt(1 + steep);
 }
@@ -42,9 +50,9 @@ BrickField reliefSurface(const BaseSurface& base, double strength, const RunCont
         const float* own = scan;
         forEachVoxel(brick, [&](const Index3& p) {
             const std::int32_t i = layer.voxels.find(p);
-            if (i >= 0)
-                *samples =
-                    std::clamp(displaced(layer.point[std::size_t(i)], *samples, *own, s), -limit, limit);
+            const float value =
+                i < 0 ? mixed(*samples, *own, s) : displaced(layer.point[std::size_t(i)], *samples, *own, s);
+            *samples = std::clamp(value, -limit, limit);
             ++samples;
             ++own;
         });

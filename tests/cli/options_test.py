@@ -5,7 +5,7 @@ import unittest
 
 from support import CliTest
 
-COMMANDS = "convert info crop mask match synth analogy texture repeat compare render make".split()
+COMMANDS = "convert info crop mask match synth analogy texture repeat compare render make relief-extract".split()
 
 
 class Answers(CliTest):

@@ -1,5 +1,6 @@
 #include "libvdbsynth/relief/base_surface.h"
 
+#include "libvdbsynth/distance/zero_level.h"
 #include "libvdbsynth/grid/field_sampling.h"
 #include "libvdbsynth/relief/relief_layer.h"
 #include "tests/relief/relief_shapes.h"
@@ -73,6 +74,51 @@ TEST_CASE("baseSurface: a wave's relief has the transfer function of the mean", 
           Approx(1 - g).margin(0.02));
 }
 
+TEST_CASE("baseSurface: every kind takes a wave off a ball and leaves the ball", "[relief][property]") {
+    const auto scanOf = [](double bump) {
+        return test::fieldFrom({117, 117, 117}, [=](const Index3& p) {
+            const double x = p.x - 58, y = p.y - 58, z = p.z - 58;
+            const double h = bump * sine(0.6 * x) * sine(0.6 * y + 0.5) * sine(0.6 * z + 1);
+            return float(std::clamp((std::sqrt(x * x + y * y + z * z) - 32 - h) / 1.05, -3.0, 3.0));
+        });
+    };
+    const BrickField bumpy = scanOf(0.8);
+    const BaseKind kind = GENERATE(BaseKind::Twicing, BaseKind::Gaussian, BaseKind::Flow, BaseKind::Normals,
+                                   BaseKind::Quadrics);
+    CAPTURE(int(kind));
+    const BaseSurface base = baseSurface(bumpy, withRadius(5, kind));
+    const double shrunk = kind == BaseKind::Gaussian || kind == BaseKind::Flow ? 25 / 32.0 : 0;
+    double sum = 0, squares = 0, count = 0;
+    for (const Vec3f& p : zeroLevel(base.distance, base.distance.box(), Facing::Outward).points) {
+        const double off = double(length(p - Vec3f{58, 58, 58})) - 32 + shrunk;
+        sum += off;
+        squares += off * off;
+        ++count;
+    }
+    CHECK(sum / count == Approx(0).margin(0.15));
+    CHECK(std::sqrt(squares / count) < 0.2);  // the bumps deviate by 0.28
+}
+
+TEST_CASE("baseSurface: normals keep the edges of a box, a mean does not", "[relief][property]") {
+    // A box of 60 voxels with a wave of 0.6 on its faces.
+    const BrickField scan = test::fieldFrom({124, 124, 124}, [](const Index3& p) {
+        const Vec3d q{std::abs(p.x - 62.) - 30, std::abs(p.y - 62.) - 30, std::abs(p.z - 62.) - 30};
+        const double wave = 0.6 * sine(0.7 * p.x) * sine(0.7 * p.y) * sine(0.7 * p.z);
+        const Vec3d out{std::max(q.x, 0.), std::max(q.y, 0.), std::max(q.z, 0.)};
+        const double d = length(out) + std::min(0., std::max({q.x, q.y, q.z}));
+        return float(std::clamp((d - wave) / 1.05, -3.0, 3.0));
+    });
+    // The edge at x = y = 32 runs along z; 0 where the base goes through it.
+    const auto cut = [&](BaseKind kind) {
+        const BaseSurface base = baseSurface(scan, withRadius(5, kind));
+        double sum = 0;
+        for (int z = 45; z < 80; ++z) sum += double(base.distance.at({32, 32, z}));
+        return sum / 35;
+    };
+    CHECK(cut(BaseKind::Normals) < 1);  // half a sample of its lattice
+    CHECK(cut(BaseKind::Gaussian) > 1.5);
+}
+
 TEST_CASE("baseSurface: options and scans out of range are refused", "[relief][error]") {
     const BrickField scan = test::ballField(10, 8);
     for (const double radius : {0.5, 1001.0, std::nan("")}) {
@@ -83,6 +129,9 @@ TEST_CASE("baseSurface: options and scans out of range are refused", "[relief][e
     BaseOptions options;
     options.band = 1;
     CHECK(test::contains(test::thrownBy([&] { baseSurface(scan, options); }).message, "`band`"));
+    options = {};
+    options.reach = 2;
+    CHECK(test::contains(test::thrownBy([&] { baseSurface(scan, options); }).message, "`reach`"));
     const BrickField nothing(IndexBox::fromSize({20, 20, 20}), 3.f);
     CHECK(test::thrownBy([&] { baseSurface(nothing); }).code == int(ErrorCode::EmptyInput));
     const test::Thrown gone = test::thrownBy([&] { baseSurface(test::ballField(3, 60), withRadius(11)); });
@@ -92,8 +141,9 @@ TEST_CASE("baseSurface: options and scans out of range are refused", "[relief][e
 
 TEST_CASE("baseSurface: same bits for any number of threads, and cancels", "[relief][determinism]") {
     const BrickField scan = test::waveField({60, 40, 60}, 17, 1);
-    CHECK(test::samplesOf(baseSurface(scan, withRadius(5), test::onThreads(1)).distance) ==
-          test::samplesOf(baseSurface(scan, withRadius(5), test::onThreads(8)).distance));
+    for (const BaseKind kind : {BaseKind::Twicing, BaseKind::Flow, BaseKind::Normals, BaseKind::Quadrics})
+        CHECK(test::samplesOf(baseSurface(scan, withRadius(5, kind), test::onThreads(1)).distance) ==
+              test::samplesOf(baseSurface(scan, withRadius(5, kind), test::onThreads(8)).distance));
     CHECK(test::thrownWhenCancelled([&](const RunContext& ctx) {
               baseSurface(scan, withRadius(5), ctx);
           }).code == int(ErrorCode::Cancelled));

@@ -41,6 +41,27 @@ TEST_CASE("reliefSurface: base and relief add up to the scan", "[relief][propert
     CHECK(farthest(base.scan, again) < 0.1);
 }
 
+TEST_CASE("reliefSurface: what a base lost is there again at strength 1", "[relief][property]") {
+    // A ball with a thin pin that no base of this radius keeps.
+    const BrickField scan = test::fieldFrom({120, 100, 100}, [](const Index3& p) {
+        const double x = p.x - 50., y = p.y - 50., z = p.z - 50.;
+        const double ball = std::sqrt(x * x + y * y + z * z) - 22;
+        const double pin = std::max(std::sqrt(y * y + z * z) - 2, std::max(-x, x - 40));
+        return float(std::clamp(std::min(ball, pin), -3.0, 3.0));
+    });
+    BaseOptions options;
+    options.radius = 4;
+    const BaseSurface base = baseSurface(scan, options);
+    CHECK(base.distance.at({88, 50, 50}) > 0);
+    CHECK(base.beyond > 0.01);
+    const BrickField again = reliefSurface(base, 1);
+    std::size_t wrong = 0;
+    forEachVoxel(scan.box(), [&](const Index3& p) {
+        wrong += std::abs(scan.at(p)) > 0.1f && (scan.at(p) < 0) != (again.at(p) < 0);
+    });
+    CHECK(wrong == 0);
+}
+
 TEST_CASE("reliefSurface: no strength is the base, a negative one inverts", "[relief][property]") {
     BaseSurface base;
     base.reach = 6;

@@ -22,7 +22,7 @@ std::string overview() {
         "[options]\n\n";
     for (const Command* command : commands()) {
         std::string name = command->name;
-        name.resize(10, ' ');
+        name.resize(16, ' ');  // the longest and two
         text += "  " + name + command->summary + "\n";
     }
     return text +

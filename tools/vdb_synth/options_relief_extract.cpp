@@ -9,7 +9,10 @@ std::vector<Option> reliefExtractOptionTable() {
     return {
         choice("base", "KIND",
                {{"twicing", "a Gaussian mean, corrected so that curved surfaces stay"},
-                {"gaussian", "a Gaussian mean; shrinks what is round"}})
+                {"gaussian", "a Gaussian mean; shrinks what is round"},
+                {"flow", "mean curvature flow; shrinks what is round"},
+                {"normals", "means of normals that keep edges, for CAD parts"},
+                {"quadrics", "local quadrics, as published in 2006"}})
             .in(Group::Method)
             .says("how the smooth base is made")
             .initially("twicing")

@@ -59,7 +59,7 @@ double radiusOf(const LevelSet& model, const ReliefExtractOptions& options, Reli
         message(ctx, MessageLevel::Detail,
                 "a base of radius " + roundedText(result.scale.radii[i] * voxel, 4) + " takes off " +
                     roundedText(result.scale.deviation[i] * voxel, 4) + " (root mean square, world)");
-    message(ctx, result.scale.gap ? MessageLevel::Detail : MessageLevel::Warning,
+    message(ctx, result.scale.gap ? MessageLevel::Detail : MessageLevel::Note,
             "base radius " + roundedText(result.scale.radius * voxel, 4) +
                 " (world): " + result.scale.reason + (result.scale.gap ? "" : "; give `baseRadius`"));
     return result.scale.radius;
@@ -129,6 +129,7 @@ ReliefExtraction extracted(const LevelSet& model, const ReliefExtractOptions& op
     of.kind = options.base;
     of.radius = radiusOf(model, options, result, ctx);
     of.band = kHalfWidth;
+    of.reach = std::max(3.f, float(options.halfWidth) + 1);
     result.radius = of.radius * result.voxelSize;
     Scan scan = gatherScan(model, of.radius, ctx);
     result.corner = scan.corner;

@@ -10,8 +10,9 @@
 namespace vdbsynth {
 
 void makeReliefGrids(ReliefExtraction& result, double halfWidth, const RunContext& ctx) {
-    const float within = std::min(float(halfWidth), result.fields.reach);
-    const ReliefLayer layer = reliefLayer(result.fields, within, ctx);
+    // Half a voxel more: the level set has distances of its own, and the relief is active where that is.
+    const ReliefLayer layer = reliefLayer(result.fields, float(halfWidth) + 0.5f, ctx);
+    const openvdb::FloatGrid::ConstAccessor base = result.base.grid->getConstAccessor();
     const float voxel = float(result.voxelSize);
     const auto heights = openvdb::FloatGrid::create(0.f);
     const auto vectors = openvdb::Vec3SGrid::create(openvdb::Vec3s(0.f));
@@ -21,6 +22,7 @@ void makeReliefGrids(ReliefExtraction& result, double halfWidth, const RunContex
     for (std::size_t i = 0; i < layer.point.size(); ++i) {
         if (!result.domain.contains(layer.voxels[i])) continue;
         const openvdb::Coord at = toCoord(layer.voxels[i] + result.corner);
+        if (!base.isValueOn(at)) continue;
         const ReliefPoint& point = layer.point[i];
         heightAt.setValue(at, point.height * voxel);
         if (!point.folds) continue;

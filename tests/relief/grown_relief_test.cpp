@@ -242,6 +242,19 @@ TEST_CASE("growRelief: every error, cancel") {
           int(ErrorCode::EmptyInput));
     CHECK(test::thrownBy([&] { growRelief(c.sample, c.distance, target, {}); }).code ==
           int(ErrorCode::ShapeMismatch));
+    // In the middle of growth.
+    std::atomic<bool> cancel{false};
+    RunContext stopped;
+    stopped.cancel = &cancel;
+    std::size_t reports = 0;
+    stopped.onProgress = [&](const Progress& progress) {
+        ++reports;
+        if (progress.done > 40) cancel = true;
+    };
+    CHECK(test::thrownBy([&] {
+              growRelief(c.sample, c.distance, target, tangent, options(1), stopped);
+          }).code == int(ErrorCode::Cancelled));
+    CHECK(reports > 3);
     CHECK(test::thrownWhenCancelled([&](const RunContext& ctx) {
               growRelief(c.sample, c.distance, target, tangent, options(2), ctx);
           }).code == int(ErrorCode::Cancelled));

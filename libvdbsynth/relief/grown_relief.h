@@ -15,7 +15,7 @@ inline constexpr std::int64_t kFlattestSite = -1;  ///< of the target, where a r
 
 struct GrownReliefOptions {
     /// [world] radius of N(t), at least 0; about the size of a feature of the relief, half a wavelength or
-    /// more. 0: kSpacingsInNeighbourhood mean distances between the target's sites, which a note says.
+    /// more. 0: kSpacingsInNeighbourhood times the target's meanSpacing, which a note says.
     double neighbourhood = 0;
     double weightFalloff =
         0.5;  ///< 0.05..100: sigma of w_v, a Gaussian of the distance to t, over the radius

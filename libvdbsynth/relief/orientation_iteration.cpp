@@ -62,7 +62,7 @@ std::vector<Vec3f> grownDirections(const RotationCosts& costs, const SurfaceSite
 
 double radiusFor(const SurfaceSites& sites, double given) {
     if (given > 0) return given;
-    const double spacing = meanNearestDistance(sites);
+    const double spacing = meanSpacing(sites);
     return spacing > 0 ? kSpacingsInNeighbourhood * spacing : 1;
 }
 
@@ -116,7 +116,7 @@ void validate(const OrientationOptions& options) {
 }
 
 std::vector<Vec3f> smoothestTangents(const SurfaceSites& sites, const RunContext& ctx) {
-    const double spacing = meanNearestDistance(sites);
+    const double spacing = meanSpacing(sites);
     return smoothDirectionField(sites, sitePlaces(sites, spacing > 0 ? spacing : 1), {1, 0, 0}, ctx).tangent;
 }
 

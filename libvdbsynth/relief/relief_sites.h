@@ -63,6 +63,11 @@ struct ReliefNeighbourhoods {
 
 inline constexpr std::size_t kMostNeighbours = 512;
 
+/// [world] side of the square that a site has to itself, from the distances to the last of its neighbours,
+/// on average; 0 if none has a neighbour. Unlike meanNearestDistance it is not misled by pairs of close
+/// sites. Summed in double in the order of the sites.
+double meanSpacing(const SurfaceSites& sites);
+
 /// @param radius   [world] above 0
 /// @param falloff  above 0: the Gaussian's sigma as a share of the radius
 /// @throw Error Memory, Cancelled

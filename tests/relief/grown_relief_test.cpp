@@ -168,7 +168,7 @@ TEST_CASE("growRelief: the neighbourhood's size and the defaults are said") {
     test::Said said;
     const GrownRelief grown =
         growRelief(c.sample, c.distance, target, std::vector<Vec3f>(300, {1, 0, 0}), {}, said.ctx);
-    CHECK(grown.neighbourhood == Approx(4 * meanNearestDistance(target)));
+    CHECK(grown.neighbourhood == Approx(4 * meanSpacing(target)));
     CHECK(said.noted("`neighbourhood` is not given"));
     CHECK(said.warnings.empty());
 }
@@ -190,7 +190,18 @@ TEST_CASE("growRelief: one site, coinciding sites, two parts") {
         sitesOfPoints(std::vector<Vec3f>(3, {1, 1, 1}), std::vector<Vec3f>(3, {0, 0, 1}), 8);
     test::Said said;
     CHECK(growRelief(c.sample, c.distance, same, std::vector<Vec3f>(3, {1, 0, 0}), {}, said.ctx).seeds == 3);
-    CHECK(said.noted("3 parts"));
+    CHECK(said.warned("3 parts"));
+    test::PointShape two = test::randomPlane(200, 12);
+    for (std::size_t i = 0; i < 200; ++i) {
+        two.point.push_back(two.point[i] + Vec3f{100, 0, 0});
+        two.normal.push_back({0, 0, 1});
+    }
+    test::Said parts;
+    const GrownRelief both = growRelief(c.sample, c.distance, test::sitesOf(two),
+                                        std::vector<Vec3f>(400, {1, 0, 0}), options(3), parts.ctx);
+    CHECK(both.seeds == 2);
+    CHECK(parts.noted("2 parts"));
+    CHECK(parts.warnings.empty());
 }
 
 TEST_CASE("growRelief: a sample without relief, and a target smaller than the neighbourhood, are said") {

@@ -20,8 +20,9 @@ struct GrownReliefOptions {
     double weightFalloff =
         0.5;  ///< 0.05..100: sigma of w_v, a Gaussian of the distance to t, over the radius
     /// [percent of the sample's sites] 0..100: eta; a match is one of so many best ones, at least one. The
-    /// more, the more varied and the less regular: 0.1 of 5 000 are five.
-    double top = 0.1;
+    /// more, the more varied, and the rougher: of irregular relief already the best five of 5 000 differ
+    /// visibly (mean SSD 1.6 times that of the best alone).
+    double top = 0.02;
     double seedRadius = 0;                 ///< [world] of the seed patch, at least 0; 0: the neighbourhood's
     std::int64_t seedSite = kTypicalSeed;  ///< of the sample, the middle of the seed patch
     std::int64_t targetSite = kFlattestSite;  ///< of the target, where growth begins

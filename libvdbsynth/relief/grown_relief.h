@@ -21,7 +21,7 @@ struct GrownReliefOptions {
         0.5;  ///< 0.05..100: sigma of w_v, a Gaussian of the distance to t, over the radius
     /// [percent of the sample's sites] 0..100: eta; a match is one of so many best ones, at least one. The
     /// more, the more varied, and the rougher: of irregular relief already the best five of 5 000 differ
-    /// visibly (mean SSD 1.6 times that of the best alone).
+    /// visibly (mean SSD 1.6 to 2 times the best one's).
     double top = 0.02;
     double seedRadius = 0;                 ///< [world] of the seed patch, at least 0; 0: the neighbourhood's
     std::int64_t seedSite = kTypicalSeed;  ///< of the sample, the middle of the seed patch

@@ -17,8 +17,7 @@ struct GrownReliefOptions {
     /// [world] radius of N(t), at least 0; about the size of a feature of the relief, half a wavelength or
     /// more. 0: kSpacingsInNeighbourhood times the target's meanSpacing, which a note says.
     double neighbourhood = 0;
-    double weightFalloff =
-        0.5;  ///< 0.05..100: sigma of w_v, a Gaussian of the distance to t, over the radius
+    double weightFalloff = 0.5;  ///< 0.05..100: sigma of w_v, a Gaussian of the distance to t, in radii
     /// [percent of the sample's sites] 0..100: eta; a match is one of so many best ones, at least one. The
     /// more, the more varied, and the rougher: of irregular relief already the best five of 5 000 differ
     /// visibly (mean SSD 1.6 to 2 times the best one's).

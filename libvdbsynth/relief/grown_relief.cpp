@@ -16,6 +16,7 @@ namespace {
 constexpr std::uint32_t kDrawsMatch = 0x72736432;  // purpose of the random numbers
 constexpr double kFlat = 0.01;                     // [voxels] displacements under it are no relief
 constexpr double kMuchCapped = 0.05;               // share of distances at the band's half-width
+constexpr std::size_t kSitesAPart = 20;            // fewer: the neighbourhood is too small to grow
 constexpr std::size_t kNearest = 16;               // sites asked for the nearest that faces the same way
 
 std::string printed(double value) {
@@ -161,7 +162,7 @@ private:
 
 double radiusOf(const SurfaceSites& target, const GrownReliefOptions& options, const RunContext& ctx) {
     if (options.neighbourhood > 0) return options.neighbourhood;
-    const double spacing = meanNearestDistance(target);
+    const double spacing = meanSpacing(target);
     if (!(spacing > 0)) return 1;  // a single site: any radius serves
     const double radius = kSpacingsInNeighbourhood * spacing;
     message(ctx, MessageLevel::Note,
@@ -196,10 +197,14 @@ void sayResult(const GrownRelief& grown, const ReliefNeighbourhoods& neighbourho
             "the neighbourhood (radius " + printed(grown.neighbourhood) +
                 ") is larger than the target, which becomes a copy of the seed patch; make `neighbourhood` "
                 "smaller for new relief");
-    if (grown.seeds > 1)
-        message(ctx, MessageLevel::Note,
+    if (grown.seeds > 1) {
+        const bool many = grown.seeds > 1 + n / kSitesAPart;
+        message(ctx, many ? MessageLevel::Warning : MessageLevel::Note,
                 "the target has " + std::to_string(grown.seeds) +
-                    " parts that growth does not connect, each with a seed patch of its own");
+                    " parts that growth does not connect, each with a seed patch of its own" +
+                    (many ? "; make `neighbourhood`, a radius of " + printed(grown.neighbourhood) + ", larger"
+                          : ""));
+    }
     if (grown.mismatch.capped > kMuchCapped)
         message(ctx, MessageLevel::Warning,
                 printed(100 * grown.mismatch.capped) +

@@ -62,18 +62,24 @@ std::vector<Vec3f> grownDirections(const RotationCosts& costs, const SurfaceSite
 
 double radiusFor(const SurfaceSites& sites, double given) {
     if (given > 0) return given;
-    const double spacing = meanNearestDistance(sites);
+    const double spacing = meanSpacing(sites);
     return spacing > 0 ? kSpacingsInNeighbourhood * spacing : 1;
 }
 
-void sayUnconverged(const ReliefOrientation& result, const OrientationOptions& options, const char* what,
-                    const RunContext& ctx) {
-    if (result.converged) return;
-    message(ctx, MessageLevel::Warning,
-            std::string("the orientation of the ") + what + " still changes by " +
-                roundedText(result.change, 3) + " degrees (`limit` " + roundedText(options.limit, 3) +
-                ") after " + std::to_string(result.rounds) +
-                " rounds; give directions, or a larger `neighbourhood` or `smoothness`");
+void sayFound(const ReliefOrientation& result, const OrientationOptions& options, const char* what,
+              const RunContext& ctx) {
+    const std::string change = roundedText(result.change, 3) + " degrees";
+    if (result.converged)
+        message(ctx, MessageLevel::Note,
+                std::string("the orientation of the ") + what + " is found by iteration (" +
+                    countText(std::size_t(result.rounds), "round") + ", last change " + change +
+                    "); give directions where it should follow others");
+    else
+        message(ctx, MessageLevel::Warning,
+                std::string("the orientation of the ") + what + " still changes by " + change + " (`limit` " +
+                    roundedText(options.limit, 3) + ") after " +
+                    countText(std::size_t(result.rounds), "round") +
+                    "; give directions, or a larger `neighbourhood` or `smoothness`");
 }
 
 // Of every grown site: the better rotations, among where it and its neighbours came from.
@@ -110,7 +116,7 @@ void validate(const OrientationOptions& options) {
 }
 
 std::vector<Vec3f> smoothestTangents(const SurfaceSites& sites, const RunContext& ctx) {
-    const double spacing = meanNearestDistance(sites);
+    const double spacing = meanSpacing(sites);
     return smoothDirectionField(sites, sitePlaces(sites, spacing > 0 ? spacing : 1), {1, 0, 0}, ctx).tangent;
 }
 
@@ -136,7 +142,7 @@ ReliefOrientation iterateOrientation(ReliefSites surface, const ReliefDistance& 
         ReliefOrientation result;
         result.tangent = grownDirections(costs, surface.sites, middle, options.smoothness, ctx);
         relaxOrientation(costs, surface.sites, options, result, ctx);
-        sayUnconverged(result, options, "sample", ctx);
+        sayFound(result, options, "sample", ctx);
         return result;
     });
 }
@@ -176,7 +182,7 @@ OrientedRelief growAndOrient(const ReliefSites& sample, const ReliefDistance& di
         best.orientation.rounds = growths;
         best.orientation.change = change;
         best.orientation.converged = converged;
-        sayUnconverged(best.orientation, orientation, "target", ctx);
+        sayFound(best.orientation, orientation, "target", ctx);
         return best;
     });
 }

@@ -14,7 +14,8 @@ struct RotationCosts {
     std::vector<float> cost;         ///< [sites x angles] over D0; 0 for a site's best one
 };
 
-/// @param referencesOf  sets the frames (in `matcher`) that site i is compared with; called from many threads
+/// @param referencesOf  sets the frames (in `matcher`) that site i is compared with; called from many
+///     threads
 RotationCosts rotationCosts(
     const ReliefSites& surface, const ReliefMatcher& matcher, const ReliefNeighbourhoods& neighbourhoods,
     int angles, const std::function<void(std::size_t i, std::vector<std::uint32_t>&)>& referencesOf,

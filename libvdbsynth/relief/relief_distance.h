@@ -7,15 +7,17 @@
 
 namespace vdbsynth {
 
-/// Squared distances to a sample's full surface, read from its band: eq. 1's distance to the nearest triangle
-/// of [breckon2006] is a look-up. Trilinear between voxels, as sampleTrilinear (grid/field_sampling.h).
+/// Squared distances to a sample's full surface, read from its band: eq. 1's distance to the nearest
+/// triangle of [breckon2006] is a look-up. Trilinear between voxels, as sampleTrilinear
+/// (grid/field_sampling.h).
 ///
-/// A band knows distances up to its half-width. Decision: what is farther, or beyond the field's box, counts
-/// as the half-width: a lower bound, so that a neighbourhood that leaves the sample is penalised, and by the
-/// same amount everywhere. A band of at least the relief's amplitude (distance/widen_band.h) ranks the rest.
+/// A band knows distances up to its half-width. Decision: what is farther, or beyond the field's box,
+/// counts as the half-width: a lower bound, so that a neighbourhood that leaves the sample is penalised,
+/// and by the same amount everywhere. A band of at least the relief's amplitude (distance/widen_band.h)
+/// ranks the rest.
 ///
-/// Bricks are kept with the next layer of voxels on their upper sides, so that the eight voxels of a look-up
-/// lie in one.
+/// Bricks are kept with the next layer of voxels on their upper sides, so that the eight voxels of a
+/// look-up lie in one.
 class ReliefDistance {
 public:
     /// @param band       [voxels] signed or not, any corner

@@ -75,9 +75,9 @@ struct ReliefMismatch {
 };
 
 /// eq. 1 for any assignment, so that methods can be compared: of every site t of `surface` the whole N(t),
-/// what came later than t too, is mapped from t's frame to the frame `source[t]` of the sample. While relief
-/// grows only a part of N(t) is there, so a front may take its source from the sample's border; bestMismatch
-/// does not mind.
+/// what came later than t too, is mapped from t's frame to the frame `source[t]` of the sample. While
+/// relief grows only a part of N(t) is there, so a front may take its source from the sample's border;
+/// bestMismatch does not mind.
 /// @param source          [sites] frames on the sample, world; their points need not be its sites
 /// @param neighbourhoods  of surface.sites
 /// @throw Error ShapeMismatch (another number of sources), as requireReliefSites, Cancelled

@@ -108,6 +108,19 @@ void requireReliefSites(const ReliefSites& relief, const std::string& what) {
     requireFinite(relief.displacement, what, "displacement");
 }
 
+double meanSpacing(const SurfaceSites& sites) {
+    double sum = 0;
+    std::size_t counted = 0;
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+        if (sites.degree(i) == 0) continue;
+        const std::uint32_t last = sites.neighbours[sites.begin[i + 1] - 1];
+        const double reach = double(length(sites.point[last] - sites.point[i]));
+        sum += reach * std::sqrt(kPi / (double(sites.degree(i)) + 0.5));
+        ++counted;
+    }
+    return counted > 0 ? sum / double(counted) : 0;
+}
+
 ReliefNeighbourhoods reliefNeighbourhoods(const SurfaceSites& sites, double radius, double falloff,
                                           const RunContext& ctx) {
     constexpr std::size_t kGrain = 1024;

@@ -15,8 +15,8 @@ struct ReliefSites {
     std::vector<Vec3f> displacement;  ///< [sites] [world] from the base to the surface
 };
 
-/// The frame of a site: tangent, normal x tangent, normal; of length 1 and perpendicular to each other. What
-/// is mapped from one site to another rigidly keeps its coordinates in their frames.
+/// The frame of a site: tangent, normal x tangent, normal; of length 1 and perpendicular to each other.
+/// What is mapped from one site to another rigidly keeps its coordinates in their frames.
 struct ReliefFrame {
     Vec3f point, tangent, binormal, normal;
 
@@ -44,7 +44,7 @@ std::vector<ReliefFrame> reliefFrames(const SurfaceSites& sites, const std::vect
 
 /// @param what  begins the message, for example "the target"
 /// @throw Error EmptyInput (no sites), ShapeMismatch (arrays of different lengths, a neighbour that is no
-/// site), Unusable (a point, normal or tangent that is not finite)
+///     site), Unusable (a point, normal or tangent that is not finite)
 void requireSites(const SurfaceSites& sites, const std::vector<Vec3f>& tangent, const std::string& what);
 /// The same for a sample, and its displacements.
 void requireReliefSites(const ReliefSites& relief, const std::string& what);
@@ -62,6 +62,11 @@ struct ReliefNeighbourhoods {
 };
 
 inline constexpr std::size_t kMostNeighbours = 512;
+
+/// [world] side of the square that a site has to itself, from the distances to the last of its neighbours,
+/// on average; 0 if none has a neighbour. Unlike meanNearestDistance it is not misled by pairs of close
+/// sites. Summed in double in the order of the sites.
+double meanSpacing(const SurfaceSites& sites);
 
 /// @param radius   [world] above 0
 /// @param falloff  above 0: the Gaussian's sigma as a share of the radius

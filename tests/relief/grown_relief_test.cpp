@@ -64,84 +64,7 @@ double awayFromSine(const test::SineRelief& sine, const SurfaceSites& sites, con
     return std::sqrt(least / double(sites.size()));
 }
 
-// The method as it is written, by linear scans; the best match only.
-GrownRelief grownPlainly(const Case& c, const SurfaceSites& target, const std::vector<Vec3f>& tangent,
-                         const GrownReliefOptions& o) {
-    const std::vector<ReliefFrame> to = reliefFrames(c.sample.sites, c.sample.tangent);
-    const std::vector<ReliefFrame> from = reliefFrames(target, tangent);
-    const ReliefNeighbourhoods near = reliefNeighbourhoods(target, o.neighbourhood, o.weightFalloff);
-    GrownRelief grown;
-    grown.source.assign(target.size(), 0);
-    grown.order.assign(target.size(), 0);
-    grown.displacement.assign(target.size(), {});
-    std::vector<char> done(target.size(), 0);
-    std::uint32_t count = 0;
-    const auto take = [&](std::size_t t, std::uint32_t s) {
-        grown.source[t] = s;
-        grown.displacement[t] = mapped(c.sample.displacement[s], to[s], from[t]);
-        grown.order[t] = count++;
-        done[t] = 1;
-    };
-    const std::uint32_t first = std::uint32_t(o.targetSite), seed = std::uint32_t(o.seedSite);
-    take(first, seed);
-    for (std::size_t k = near.begin[first]; k < near.begin[first + 1]; ++k) {
-        const std::uint32_t v = near.member[k];
-        const Vec3f place =
-            to[seed].point + mapped(target.point[v] - target.point[first], from[first], to[seed]);
-        std::uint32_t nearest = 0;
-        for (std::uint32_t s = 0; s < to.size(); ++s)
-            if (length(to[s].point - place) < length(to[nearest].point - place)) nearest = s;
-        take(v, nearest);
-    }
-    while (count < target.size()) {
-        std::size_t next = 0, most = 0;
-        for (std::size_t t = 0; t < target.size(); ++t) {
-            std::size_t textured = 0;
-            for (std::size_t k = near.begin[t]; k < near.begin[t + 1]; ++k) textured += done[near.member[k]];
-            if (done[t] || textured <= most) continue;
-            most = textured;
-            next = t;
-        }
-        std::uint32_t best = 0;
-        float least = 1e30f;
-        for (std::uint32_t s = 0; s < to.size(); ++s) {
-            float sum = 0;
-            for (std::size_t k = near.begin[next]; k < near.begin[next + 1]; ++k) {
-                const std::uint32_t v = near.member[k];
-                if (!done[v]) continue;
-                const Vec3f place =
-                    from[next].toLocal(target.point[v] - target.point[next] + grown.displacement[v]);
-                sum += near.weight[k] *
-                       c.distance.squared(c.distance.toVoxels(to[s].point) + to[s].toWorld(place));
-            }
-            if (sum < least) {
-                least = sum;
-                best = s;
-            }
-        }
-        take(next, best);
-    }
-    return grown;
-}
-
 }  // namespace
-
-TEST_CASE("growRelief: the same as the method written plainly, by linear scans") {
-    const Case c;
-    for (const test::PointShape& shape : {test::randomPlane(250, 16), test::spiralSphere(250, 10)}) {
-        const SurfaceSites target = test::sitesOf(shape);
-        const std::vector<Vec3f> tangent(target.size(), {0.8f, 0.6f, 0.1f});
-        GrownReliefOptions o = options(3);
-        o.top = 0;
-        o.targetSite = 77;
-        o.seedSite = 18 * kSide + 17;
-        const GrownRelief grown = growRelief(c.sample, c.distance, target, tangent, o);
-        const GrownRelief plain = grownPlainly(c, target, tangent, o);
-        CHECK(grown.order == plain.order);
-        CHECK(grown.source == plain.source);
-        CHECK(grown.seeds == 1);
-    }
-}
 
 TEST_CASE("growRelief: a sine on a plane continues, along the target's own directions") {
     const Case c;
@@ -245,7 +168,7 @@ TEST_CASE("growRelief: the neighbourhood's size and the defaults are said") {
     test::Said said;
     const GrownRelief grown =
         growRelief(c.sample, c.distance, target, std::vector<Vec3f>(300, {1, 0, 0}), {}, said.ctx);
-    CHECK(grown.neighbourhood == Approx(4 * meanNearestDistance(target)));
+    CHECK(grown.neighbourhood == Approx(4 * meanSpacing(target)));
     CHECK(said.noted("`neighbourhood` is not given"));
     CHECK(said.warnings.empty());
 }
@@ -267,7 +190,18 @@ TEST_CASE("growRelief: one site, coinciding sites, two parts") {
         sitesOfPoints(std::vector<Vec3f>(3, {1, 1, 1}), std::vector<Vec3f>(3, {0, 0, 1}), 8);
     test::Said said;
     CHECK(growRelief(c.sample, c.distance, same, std::vector<Vec3f>(3, {1, 0, 0}), {}, said.ctx).seeds == 3);
-    CHECK(said.noted("3 parts"));
+    CHECK(said.warned("3 parts"));
+    test::PointShape two = test::randomPlane(200, 12);
+    for (std::size_t i = 0; i < 200; ++i) {
+        two.point.push_back(two.point[i] + Vec3f{100, 0, 0});
+        two.normal.push_back({0, 0, 1});
+    }
+    test::Said parts;
+    const GrownRelief both = growRelief(c.sample, c.distance, test::sitesOf(two),
+                                        std::vector<Vec3f>(400, {1, 0, 0}), options(3), parts.ctx);
+    CHECK(both.seeds == 2);
+    CHECK(parts.noted("2 parts"));
+    CHECK(parts.warnings.empty());
 }
 
 TEST_CASE("growRelief: a sample without relief, and a target smaller than the neighbourhood, are said") {
@@ -319,6 +253,19 @@ TEST_CASE("growRelief: every error, cancel") {
           int(ErrorCode::EmptyInput));
     CHECK(test::thrownBy([&] { growRelief(c.sample, c.distance, target, {}); }).code ==
           int(ErrorCode::ShapeMismatch));
+    // In the middle of growth.
+    std::atomic<bool> cancel{false};
+    RunContext stopped;
+    stopped.cancel = &cancel;
+    std::size_t reports = 0;
+    stopped.onProgress = [&](const Progress& progress) {
+        ++reports;
+        if (progress.done > 40) cancel = true;
+    };
+    CHECK(test::thrownBy([&] {
+              growRelief(c.sample, c.distance, target, tangent, options(1), stopped);
+          }).code == int(ErrorCode::Cancelled));
+    CHECK(reports > 3);
     CHECK(test::thrownWhenCancelled([&](const RunContext& ctx) {
               growRelief(c.sample, c.distance, target, tangent, options(2), ctx);
           }).code == int(ErrorCode::Cancelled));

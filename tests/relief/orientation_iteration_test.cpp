@@ -86,7 +86,11 @@ TEST_CASE("growAndOrient: a target without directions") {
     const SurfaceSites target = test::sitesOf(test::randomPlane(600, 24));
     GrownReliefOptions grow;
     grow.neighbourhood = 6;
-    const OrientedRelief found = growAndOrient(c.sample, c.distance, target, grow);
+    test::Said said;
+    const OrientedRelief found = growAndOrient(c.sample, c.distance, target, grow, {}, said.ctx);
+    CHECK(said.noted("the orientation of the target is found by iteration"));
+    CHECK(said.notes.size() == 1);
+    CHECK(said.warnings.empty());
     const Vec3f first = found.orientation.tangent[0];
     CHECK(shareAlong(found.orientation.tangent, first) > 0.9);
     INFO(found.orientation.rounds << " growths, change " << found.orientation.change << " first " << first.x

@@ -76,6 +76,22 @@ TEST_CASE("reliefNeighbourhoods: the same as a linear scan on a ball, with Gauss
     }
 }
 
+TEST_CASE("meanSpacing: a lattice by hand, random sites and pairs by their density") {
+    // Of nine points the middle one's eighth neighbour is at sqrt(2), a corner's at sqrt(8), an edge's at
+    // sqrt(5).
+    const double unit = std::sqrt(kPi / 8.5);
+    CHECK(meanSpacing(sitesOf(test::latticePlane(3))) ==
+          Approx(unit * (std::sqrt(2.0) + 4 * std::sqrt(8.0) + 4 * std::sqrt(5.0)) / 9));
+    test::PointShape shape = test::randomPlane(2500, 50);
+    CHECK(meanSpacing(sitesOf(shape)) == Approx(1).epsilon(0.1));
+    for (std::size_t i = 0; i < 2500; ++i) {  // another one beside each
+        shape.point.push_back(shape.point[i] + Vec3f{1e-3f, 0, 0});
+        shape.normal.push_back({0, 0, 1});
+    }
+    CHECK(meanSpacing(sitesOf(shape)) == Approx(std::sqrt(0.5)).epsilon(0.2));
+    CHECK(meanSpacing(sitesOfPoints({{0, 0, 0}}, {{0, 0, 1}}, 8)) == 0);
+}
+
 TEST_CASE("reliefNeighbourhoods: the far side of a thin wall is out, crowds are cut") {
     test::PointShape wall = test::latticePlane(12);
     const std::size_t half = wall.point.size();

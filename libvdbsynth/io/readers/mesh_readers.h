@@ -19,8 +19,9 @@ MeshContent readOff(const std::string& path, const std::string& content, const R
 MeshContent readPly(const std::string& path, const std::string& content, const RunContext& ctx = {});
 MeshContent readStl(const std::string& path, const std::string& content, const RunContext& ctx = {});
 
-// The content of a .3mf file: an object for each solid part with its cavities, several as components of one
-// that is built. The same mesh gives the same bytes. @throw Error Unusable (over 4 GB of text)
+// The content of a .3mf file: an object for each solid part with its cavities, one for all open parts;
+// several are components of one that is built. The same mesh gives the same bytes. @throw Error Unusable
+// (over 4 GB of text)
 std::string threemfBytes(const Mesh& mesh);
 // True if a file of that kind holds the mesh's colours: all within 0..1.
 bool holds3mfColours(const Mesh& mesh);

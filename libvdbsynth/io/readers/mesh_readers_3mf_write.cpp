@@ -66,23 +66,28 @@ struct Part {
     std::vector<std::uint32_t> vertices;  // of the welded mesh, ascending
 };
 
-// The part that a part is written with: cavities, and what adds nothing, with the solid around them.
-std::size_t ownerOf(const MeshParts& parts, std::size_t part) {
-    while ((parts.parts[part].role == PartRole::Cavity || parts.parts[part].role == PartRole::United) &&
-           parts.parts[part].around >= 0)
+// The part that a part is written with: cavities, and what adds nothing, with the solid around them; open
+// ones, which bound nothing by themselves, all with the first.
+std::size_t ownerOf(const MeshParts& parts, std::size_t part, std::size_t firstOpen) {
+    const auto role = [&] { return parts.parts[part].role; };
+    while ((role() == PartRole::Cavity || role() == PartRole::United) && parts.parts[part].around >= 0)
         part = std::size_t(parts.parts[part].around);
-    return part;
+    return role() == PartRole::Open ? firstOpen : part;
 }
 
 // Of a mesh of triangles, welded. Triangles with two corners at one place are left out: their edges cancel.
 std::vector<Part> partsOf(const Mesh& welded) {
     const MeshParts all = meshParts(welded);
+    const std::size_t firstOpen =
+        std::size_t(std::find_if(all.parts.begin(), all.parts.end(),
+                                 [](const MeshPart& part) { return part.role == PartRole::Open; }) -
+                    all.parts.begin());
     std::vector<std::size_t> place(all.parts.size(), all.parts.size());
     std::vector<Part> parts;
     for (std::size_t f = 0; f < welded.triangles.size(); ++f) {
         const Triangle& t = welded.triangles[f];
         if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
-        const std::size_t owner = ownerOf(all, all.partOf[f]);
+        const std::size_t owner = ownerOf(all, all.partOf[f], firstOpen);
         if (place[owner] == all.parts.size()) {
             place[owner] = parts.size();
             parts.emplace_back();

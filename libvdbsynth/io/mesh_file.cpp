@@ -26,6 +26,8 @@ MeshContent readFormat(MeshFormat format, const std::string& path, const std::st
         case MeshFormat::Gltf:
         case MeshFormat::Glb:
             return readGltf(path, content, ctx);
+        case MeshFormat::ThreeMf:
+            return read3mf(path, content, ctx);
     }
     return {};
 }
@@ -34,7 +36,7 @@ bool formatOfExtension(const std::string& extension, MeshFormat& format) {
     static const std::pair<const char*, MeshFormat> formats[] = {
         {"obj", MeshFormat::Obj}, {"ply", MeshFormat::Ply},    {"stl", MeshFormat::Stl},
         {"off", MeshFormat::Off}, {"mesh", MeshFormat::Medit}, {"gltf", MeshFormat::Gltf},
-        {"glb", MeshFormat::Glb}};
+        {"glb", MeshFormat::Glb}, {"3mf", MeshFormat::ThreeMf}};
     for (const auto& [name, value] : formats)
         if (extension == name) {
             format = value;
@@ -56,8 +58,9 @@ bool writableMeshFormatOf(const std::string& path, MeshFormat& format) {
 Mesh readMesh(const std::string& path, const RunContext& ctx) {
     MeshFormat format{};
     if (!meshFormatOf(path, format))
-        throw Error(ErrorCode::InvalidOption,
-                    path + ": unknown extension; meshes are .obj, .ply, .stl, .off, .gltf, .glb or .mesh");
+        throw Error(
+            ErrorCode::InvalidOption,
+            path + ": unknown extension; meshes are .obj, .ply, .stl, .off, .gltf, .glb, .3mf or .mesh");
     Stage stage(ctx, "reading " + path, 2, /* reading= */ true);
     const std::string content = readWholeFile(path);
     stage.advance();

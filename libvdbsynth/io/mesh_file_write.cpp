@@ -1,4 +1,4 @@
-// The writers behind writeMesh and writePointsPly, except glTF's.
+// The writers behind writeMesh and writePointsPly, except glTF's and 3MF's.
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/geometry/mesh_check.h"
@@ -211,6 +211,8 @@ void writeMesh(const std::string& path, MeshFormat format, const Mesh& mesh) {
             return writeWholeFile(path, gltfBytes(mesh, /* binary= */ false));
         case MeshFormat::Glb:
             return writeWholeFile(path, gltfBytes(mesh, /* binary= */ true));
+        case MeshFormat::ThreeMf:
+            return writeWholeFile(path, threemfBytes(mesh));
         case MeshFormat::Medit:
             throw Error(ErrorCode::InvalidOption, path + ": MEDIT meshes are read, not written");
     }

@@ -48,10 +48,10 @@ std::string pathBelow(const std::string& folder, const std::string& name, std::s
 }
 
 bool isKnownExtension(const std::string& extension) {
-    static const std::set<std::string> known{"vdb",    "obj", "ply", "stl",  "off", "mesh",  "gltf",  "glb",
-                                             "xyz",    "pwn", "pcd", "pts",  "txt", "asc",   "csv",   "xyzn",
-                                             "xyzrgb", "png", "jpg", "jpeg", "pgm", "ppm",   "pnm",   "tif",
-                                             "tiff",   "exr", "npy", "vti",  "nii", "sgems", "gslib", "inr"};
+    static const std::set<std::string> known{
+        "vdb", "obj", "ply", "stl",  "off", "mesh", "gltf",   "glb", "3mf",   "xyz",   "pwn",
+        "pcd", "pts", "txt", "asc",  "csv", "xyzn", "xyzrgb", "png", "jpg",   "jpeg",  "pgm",
+        "ppm", "pnm", "tif", "tiff", "exr", "npy",  "vti",    "nii", "sgems", "gslib", "inr"};
     return known.count(extension.size() > 3 && extension.compare(extension.size() - 3, 3, ".gz") == 0
                            ? extension.substr(0, extension.size() - 3)
                            : extension) > 0;
@@ -62,6 +62,7 @@ std::string extensionOfContent(const std::string& start) {
         {" BDV", "vdb"},
         {"ply", "ply"},
         {"glTF", "glb"},
+        {"PK\x03\x04", "3mf"},
         {"\x89PNG", "png"},
         {"\xff\xd8\xff", "jpg"},
         {"II*", "tif"},

@@ -27,6 +27,7 @@ add_cli_test(reported_volumes_test VtiFiles NiftiFiles ArrayFiles TextVolumes Tu
 add_cli_test(rival_test Rival)
 add_cli_test(synth_test Synth)
 add_cli_test(texture_test Texture Pictures Hostile)
+add_cli_test(threemf_test ThreeMf)
 add_cli_test(programs_test Programs)
 
 # A short run of every fuzz target; tools/dev/fuzz.sh runs them for longer.

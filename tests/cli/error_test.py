@@ -155,7 +155,7 @@ class Disk(CliTest):
 
     def test_a_write_that_fails_harms_nothing(self):
         self.ok("make", "grid", "g.vdb", "--resolution", 24)
-        for name in ("x.vdb", "x.obj", "x.ply", "x.stl", "x.off", "x.glb", "x.gltf", "x.png", "x.exr"):
+        for name in ("x.vdb", "x.obj", "x.ply", "x.stl", "x.off", "x.glb", "x.gltf", "x.3mf", "x.png", "x.exr"):
             self.ok("convert", "g.vdb", "-o", name, "--quiet")
             size = os.path.getsize(self.path(name))
             for room in (0, 1, size // 3, size - 1):

@@ -98,7 +98,7 @@ class Texture(CliTest):
         self.assertGreater(len(colours), 1)
 
     def test_kinds_of_target(self):
-        self.ok("texture", "b.vdb", "checks.png", "-o", "l.vdb", "-o", "l.ply", "-o", "l.obj", "-o", "l.off", "-o", "l.gltf")
+        self.ok("texture", "b.vdb", "checks.png", "-o", "l.vdb", "-o", "l.ply", "-o", "l.obj", "-o", "l.off", "-o", "l.gltf", "-o", "l.3mf")
         self.ok("texture", "b.off", "checks.png", "-o", "p.ply", "--as", "points")
         self.assertEqual(json.loads(self.ok("info", "p.ply", "--json").stdout)["kind"], "points")
         self.ok("texture", "b.off", "checks.png", "-o", "v.vdb", "--as", "levelset", "--resolution", 30)

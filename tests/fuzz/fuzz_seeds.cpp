@@ -42,6 +42,8 @@ int main(int argc, char** argv) {
         std::filesystem::create_directories(kind);
         std::ofstream(kind / file.stem(), std::ios::binary) << content;
     }
+    std::filesystem::create_directories(std::filesystem::path(argv[1]) / "model");
+    std::ofstream(std::filesystem::path(argv[1]) / "model" / "full") << vdbsynth::test::fullThreemfModel();
     std::size_t number = 0;
     for (const auto& [kind, content] : vdbsynth::test::volumeDialects()) {
         const std::filesystem::path name =

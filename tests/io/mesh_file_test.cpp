@@ -36,7 +36,7 @@ TEST_CASE("readMesh, writeMesh: what is written reads back, in every format", "[
     const test::TemporaryFolder folder;
     const Mesh mesh = test::sphereMesh(1.7, 2);
     const MeshSummary before = summarize(mesh);
-    for (const char* name : {"a.obj", "a.ply", "a.stl", "a.off"}) {
+    for (const char* name : {"a.obj", "a.ply", "a.stl", "a.off", "a.3mf"}) {
         INFO(name);
         MeshFormat format{};
         REQUIRE(meshFormatOf(name, format));

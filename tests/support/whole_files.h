@@ -6,6 +6,7 @@
 #include "tests/support/raster_files.h"
 #include "tests/support/stl_files.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/threemf_files.h"
 
 #include <map>
 #include <string>
@@ -19,8 +20,9 @@ inline std::map<std::string, std::string> wholeFiles(const TemporaryFolder& fold
     std::map<std::string, std::string> files;
     const Mesh mesh = boxMesh({0, 0, 0}, {1, 2, 3});
     const std::pair<const char*, MeshFormat> formats[] = {
-        {"a.obj", MeshFormat::Obj}, {"a.ply", MeshFormat::Ply}, {"a.stl", MeshFormat::Stl},
-        {"a.off", MeshFormat::Off}, {"a.glb", MeshFormat::Glb}, {"a.gltf", MeshFormat::Gltf}};
+        {"a.obj", MeshFormat::Obj},    {"a.ply", MeshFormat::Ply}, {"a.stl", MeshFormat::Stl},
+        {"a.off", MeshFormat::Off},    {"a.glb", MeshFormat::Glb}, {"a.gltf", MeshFormat::Gltf},
+        {"a.3mf", MeshFormat::ThreeMf}};
     for (const auto& [name, format] : formats) {
         writeMesh(folder.path(name), format, mesh);
         files[name] = contentOf(folder.path(name));
@@ -56,6 +58,7 @@ inline std::map<std::string, std::string> wholeFiles(const TemporaryFolder& fold
         "0\nEnd\n";
     files["b.glb"] = posedGltf().bytes();
     files["c.glb"] = pointsGltf().bytes();
+    files["full.3mf"] = fullThreemf();
     files["a.mesh"] =
         "MeshVersionFormatted 1\nDimension 3\nVertices 3\n0 0 0 0\n1 0 0 0\n0 1 0 0\nTriangles 1\n1 2 3 "
         "0\nEnd\n";

@@ -22,7 +22,7 @@ void requireKind(const std::string& as, const std::string& path) {
     if (as == "points") require(extension == "ply", ".ply");
     if (as == "levelset") require(extension == "vdb", ".vdb");
     if (as == "heightfield") require(heights, ".png or .exr");
-    if (as == "mesh") require(!heights && extension != "vdb", ".obj, .ply, .stl, .off, .glb or .gltf");
+    if (as == "mesh") require(!heights && extension != "vdb", ".obj, .ply, .stl, .off, .glb, .gltf or .3mf");
 }
 
 // --height is of images, as inputs and as outputs.

@@ -161,13 +161,14 @@ std::vector<Option> outputTable() {
     return {
         output("output", "FILE", {})
             .shortly('o')
-            .says("file to write, its kind by extension: .vdb, .obj, .ply, .stl, .off, .glb, .gltf; heights "
-                  "as .png or .exr")
+            .says("file to write, its kind by extension: .vdb, .obj, .ply, .stl, .off, .glb, .gltf, .3mf; "
+                  "heights as .png or .exr")
             .repeatable()
             .takenBy({"convert", "crop", "synth", "analogy", "repeat", "make", "relief"}),
-        output("output", "FILE", {"ply", "obj", "off", "glb", "gltf", "vdb", "png", "exr"})
+        output("output", "FILE", {"ply", "obj", "off", "glb", "gltf", "3mf", "vdb", "png", "exr"})
             .shortly('o')
-            .says("file to write, its kind by extension: .ply points or mesh, .obj, .off, .glb, .gltf mesh, "
+            .says("file to write, its kind by extension: .ply points or mesh, .obj, .off, .glb, .gltf, .3mf "
+                  "mesh, "
                   ".vdb level set or points; with --bake .png, .exr pictures")
             .repeatable()
             .takenBy({"texture"}),

@@ -190,7 +190,7 @@ void requireModelPath(const std::string& path) {
                             "CloudCompare or PDAL");
     throw Error(ErrorCode::InvalidOption,
                 path +
-                    ": unknown extension; models are .vdb, meshes .obj, .ply, .stl, .off, .gltf, .glb, "
+                    ": unknown extension; models are .vdb, meshes .obj, .ply, .stl, .off, .gltf, .glb, .3mf, "
                     ".mesh, points .ply, " +
                     kPointExtensions + ", " + kRasterExtensions + ", each also with .gz");
 }

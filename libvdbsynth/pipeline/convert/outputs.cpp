@@ -76,6 +76,14 @@ void warnOfSteps(const std::string& path, const Mesh& mesh, const RunContext& ct
                 "; .ply, .obj, .off and .glb keep them");
 }
 
+void sayLost(const std::string& path, const Mesh& mesh, const RunContext& ctx) {
+    const std::string lost = lostIn3mf(mesh);
+    if (!lost.empty())
+        message(ctx, MessageLevel::Note,
+                path + ": .3mf has no place for " + lost + "; .ply and .glb hold all attributes");
+    message(ctx, MessageLevel::Detail, path + ": a unit of the world is a millimetre");
+}
+
 void writeOne(const LevelSet& model, const std::string& path, const std::string& temporary,
               const ModelOutputOptions& options, std::optional<Mesh>& mesh, const RunContext& ctx) {
     if (extensionOf(path) == "vdb") {
@@ -105,6 +113,7 @@ void writeOne(const LevelSet& model, const std::string& path, const std::string&
     MeshFormat format{};
     writableMeshFormatOf(path, format);
     if (format == MeshFormat::Stl) warnOfSteps(path, *mesh, ctx);
+    if (format == MeshFormat::ThreeMf) sayLost(path, *mesh, ctx);
     writeMesh(temporary, format, *mesh);
 }
 
@@ -114,10 +123,11 @@ void requireOutputPaths(const std::vector<std::string>& paths) {
     for (const std::string& path : paths) {
         MeshFormat format{};
         if (extensionOf(path) != "vdb" && !isHeightPath(path) && !writableMeshFormatOf(path, format))
-            throw Error(ErrorCode::InvalidOption,
-                        path +
-                            ": unknown extension; outputs are .vdb, .obj, .ply, .stl, .off, .glb, .gltf, or "
-                            ".png and .exr for heights");
+            throw Error(
+                ErrorCode::InvalidOption,
+                path +
+                    ": unknown extension; outputs are .vdb, .obj, .ply, .stl, .off, .glb, .gltf, .3mf, or "
+                    ".png and .exr for heights");
     }
 }
 

@@ -11,7 +11,7 @@ CornerCoordinates cornersOf(const TextureShape& shape, const TextureResult& resu
 std::vector<std::string> sampleComments(const TextureResult& result,
                                         const std::vector<TextureSample>& samples);
 
-/// .ply, .obj, .off, .glb, .gltf. @param path  for messages and the format
+/// .ply, .obj, .off, .glb, .gltf, .3mf. @param path  for messages and the format
 void writeTexturedMesh(const TextureShape& shape, const TextureResult& result,
                        const std::vector<TextureSample>& samples, const std::string& path,
                        const std::string& temporary, const RunContext& ctx);

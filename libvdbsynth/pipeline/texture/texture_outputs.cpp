@@ -14,7 +14,8 @@
 
 namespace vdbsynth {
 
-const char* const kTextureExtensions = ".ply, .obj, .off, .glb, .gltf, .vdb, and with `bake` .png and .exr";
+const char* const kTextureExtensions =
+    ".ply, .obj, .off, .glb, .gltf, .3mf, .vdb, and with `bake` .png and .exr";
 
 namespace {
 

@@ -24,8 +24,8 @@ void validate(const TextureOutputOptions& options);
 /// The extensions that writeTextured writes, in words.
 extern const char* const kTextureExtensions;
 
-/// What the target must be for its outputs, before the work begins: faces for .obj, .off, .glb and .gltf;
-/// faces with texture coordinates for pictures.
+/// What the target must be for its outputs, before the work begins: faces for .obj, .off, .glb, .gltf and
+/// .3mf; faces with texture coordinates for pictures.
 /// @throw Error InvalidOption (an unknown extension, pictures without `bake`, `bake` without pictures),
 /// Unusable (the target has no faces, or no texture coordinates)
 void requireOutputs(const TextureShape& shape, const std::vector<std::string>& paths,

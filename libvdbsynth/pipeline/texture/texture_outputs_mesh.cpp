@@ -148,10 +148,12 @@ void writeTexturedMesh(const TextureShape& shape, const TextureResult& result,
     if (extension == "obj" || extension == "glb" || extension == "gltf")
         return writePictured(shape, result, samples, path, temporary, ctx);
     Attributes attributes = withOwnAttributes(shape, textureAttributes(shape, result, samples));
-    if (extension == "off") {
+    if (extension == "off" || extension == "3mf") {
         if (samples.front().maps.size() > 1)
-            message(ctx, MessageLevel::Note, path + ": .off holds the colour only, no other map");
-        return writeMesh(temporary, MeshFormat::Off, meshOf(shape, std::move(attributes)));
+            message(ctx, MessageLevel::Note,
+                    path + ": ." + extension + " holds the colour only, no other map");
+        return writeMesh(temporary, extension == "off" ? MeshFormat::Off : MeshFormat::ThreeMf,
+                         meshOf(shape, std::move(attributes)));
     }
     const std::vector<std::string> comments = sampleComments(result, samples);
     if (!shape.triangles.empty())

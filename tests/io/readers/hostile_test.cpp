@@ -101,8 +101,9 @@ TEST_CASE("files: a host with a decimal comma writes the same bytes and reads th
     files["b.vti"] = test::vti("0 1 0 1 0 0", "Spacing=\"0.5 0.5 0.5\"", "type=\"Float32\" format=\"ascii\"",
                                "0.5 1.5 2.5 3.5");
     const std::pair<const char*, MeshFormat> formats[] = {
-        {"w.obj", MeshFormat::Obj}, {"w.ply", MeshFormat::Ply}, {"w.stl", MeshFormat::Stl},
-        {"w.off", MeshFormat::Off}, {"w.glb", MeshFormat::Glb}, {"w.gltf", MeshFormat::Gltf}};
+        {"w.obj", MeshFormat::Obj},    {"w.ply", MeshFormat::Ply}, {"w.stl", MeshFormat::Stl},
+        {"w.off", MeshFormat::Off},    {"w.glb", MeshFormat::Glb}, {"w.gltf", MeshFormat::Gltf},
+        {"w.3mf", MeshFormat::ThreeMf}};
     for (const auto& [name, format] : formats) {
         writeMesh(folder.path(name), format, oddMesh());
         files[name] = test::contentOf(folder.path(name));

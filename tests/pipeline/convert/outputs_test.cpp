@@ -10,6 +10,7 @@
 #include "libvdbsynth/io/raster_file.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "tests/support/makers.h"
+#include "tests/support/said.h"
 #include "tests/support/temporary_folder.h"
 
 using namespace vdbsynth;
@@ -60,7 +61,7 @@ void write(const LevelSet& model, const std::vector<std::string>& paths,
 }
 
 const std::vector<std::string> kAllNames{"o.vdb", "o.obj",  "o.ply", "o.stl", "o.off",
-                                         "o.glb", "o.gltf", "o.png", "o.exr"};
+                                         "o.glb", "o.gltf", "o.3mf", "o.png", "o.exr"};
 
 }  // namespace
 
@@ -90,7 +91,7 @@ TEST_CASE("writeModel: one run writes every kind, nothing before commit, twice t
         const MeshSummary first = summarize(readMesh(paths[1]));
         CHECK(first.closedManifold());
         CHECK(first.signedVolume == Approx(4.18879 * 64).epsilon(0.02));
-        for (std::size_t i = 2; i < 7; ++i) CHECK(summarize(readMesh(paths[i])).faces >= first.faces);
+        for (std::size_t i = 2; i < 8; ++i) CHECK(summarize(readMesh(paths[i])).faces >= first.faces);
     }
     for (std::size_t i = 0; i < kAllNames.size(); ++i) {
         INFO(kAllNames[i]);
@@ -201,4 +202,17 @@ TEST_CASE("writeModel: options out of range, bad models, no folder, nothing to w
     for (const char* name : {"a.obj", "a.png", "a.exr"})
         CHECK(code(flat, folder.path(name)) == int(ErrorCode::EmptyInput));
     CHECK(folder.fileCount() == 0);
+}
+
+TEST_CASE("writeModel: what .3mf has no place for is a note", "[pipeline][error]") {
+    const test::TemporaryFolder folder;
+    LevelSet model = ball();
+    const auto heat = openvdb::FloatGrid::create(2.5f);
+    heat->setName("heat");
+    heat->setTransform(model.grid->transform().copy());
+    model.attributes = {heat};
+    test::Said said;
+    write(model, {folder.path("o.3mf")}, {}, said.ctx);
+    CHECK(said.noted("o.3mf: .3mf has no place for heat"));
+    CHECK(readMesh(folder.path("o.3mf")).attributes.empty());
 }

@@ -1,7 +1,7 @@
 #pragma once
 #include "libvdbsynth/grid/brick_field.h"
-#include "libvdbsynth/relief/relief_distance.h"
-#include "libvdbsynth/relief/relief_sites.h"
+#include "libvdbsynth/relief/growth/relief_distance.h"
+#include "libvdbsynth/relief/growth/relief_sites.h"
 #include "tests/support/point_shapes.h"
 
 #include <algorithm>

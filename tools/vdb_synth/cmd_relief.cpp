@@ -32,6 +32,7 @@ ReliefOptions parseOptions(const Arguments& arguments) {
     options.method = arguments.text("method") == "paper" ? ReliefMethod::Paper : ReliefMethod::Default;
     options.base = baseKindOf(arguments.text("base"));
     options.baseRadius = arguments.real("base-radius");
+    options.wholeSample = arguments.has("whole-sample");
     options.scale = arguments.real("scale");
     options.strength = arguments.real("strength");
     options.minWall = arguments.real("min-wall");
@@ -74,7 +75,8 @@ void checkSamples(const Arguments& arguments) {
                 throw Error(ErrorCode::InvalidOption,
                             std::string("--") + name + ": has no effect, as no SAMPLE is a picture");
     if (pictures == last - first)
-        for (const char* name : {"base", "base-radius", "exemplar-direction", "exemplar-resolution"})
+        for (const char* name :
+             {"base", "base-radius", "exemplar-direction", "exemplar-resolution", "whole-sample"})
             if (arguments.has(name))
                 throw Error(ErrorCode::InvalidOption,
                             std::string("--") + name + ": has no effect on pictures, only on scans");

@@ -25,6 +25,12 @@ std::vector<Option> reliefOptionTable() {
             .says("percent of the sample's vertices among which the paper's method draws")
             .initially("0.1")
             .takenBy(relief),
+        flag("whole-sample")
+            .in(Group::Controls)
+            .says("copy also from the plain parts of a scan; else from where its relief is at least half as "
+                  "high as "
+                  "where it is highest")
+            .takenBy(relief),
         real("scale", "S", 0.05, 20)
             .in(Group::Controls)
             .says("size of the relief; at 1 a voxel of SAMPLE, or a pixel, lands on a voxel of TARGET")

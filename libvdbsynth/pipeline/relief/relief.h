@@ -37,9 +37,11 @@ struct ReliefOptions {
     ReliefMethod method = ReliefMethod::Default;
     BaseKind base = BaseKind::Twicing;
     double baseRadius = 0;  ///< [world of the sample] as ReliefExtractOptions::baseRadius; 0: found
-    double scale = 1;       ///< 0.05..20: at 1 a voxel of the sample lands on a voxel of the target
-    double strength = 1;    ///< -100..100 of the relief; below 0 inverted
-    double minWall = 0;     ///< [world of the target] at least 0, that carving leaves of thin parts
+    bool wholeSample =
+        false;            ///< also copies from parts of a scan that are plain (ReliefSampleOptions::rough)
+    double scale = 1;     ///< 0.05..20: at 1 a voxel of the sample lands on a voxel of the target
+    double strength = 1;  ///< -100..100 of the relief; below 0 inverted
+    double minWall = 0;   ///< [world of the target] at least 0, that carving leaves of thin parts
     std::optional<DirectionSource> direction;          ///< of u over the target; none: free
     std::optional<DirectionSource> exemplarDirection;  ///< of u over scans; none: the smoothest field
     CoordinateOptions synthesis;                       ///< of the default method

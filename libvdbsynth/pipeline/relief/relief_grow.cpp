@@ -4,7 +4,7 @@
 #include "libvdbsynth/distance/zero_level.h"
 #include "libvdbsynth/grid/field_sampling.h"
 #include "libvdbsynth/pipeline/relief/relief_steps.h"
-#include "libvdbsynth/relief/grown_relief.h"
+#include "libvdbsynth/relief/growth/grown_relief.h"
 #include "libvdbsynth/relief/relief_layer.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"

@@ -13,7 +13,8 @@
 namespace vdbsynth {
 namespace {
 
-constexpr double kNothing = 0.05;     // [voxels] root mean square of heights under which there is no relief
+constexpr double kNothing = 0.05;  // [voxels] root mean square of heights under which there is no relief
+constexpr double kMostlyRough = 0.9;
 constexpr double kFewCovered = 0.85;  // share of a scan under which a warning says what is not shown
 
 double deviationOf(const ReliefSample& sample) {
@@ -60,6 +61,7 @@ ReliefSample sampleOfScan(const ReliefSource& source, const ReliefOptions& optio
         };
     }
     ReliefSampleOptions flat;
+    if (options.wholeSample) flat.rough = 0;
     if (options.exemplarDirection) flat.maxRotation = kGivenReliefRotation;
     ReliefSample sample = reliefSample(fields, directions, flat, ctx);
     sample.corner = extraction.corner;
@@ -70,6 +72,10 @@ ReliefSample sampleOfScan(const ReliefSource& source, const ReliefOptions& optio
                 " texels, that show " + roundedText(100 * sample.covered, 3) + " % of it; relief from " +
                 roundedText(sample.lowest, 3) + " to " + roundedText(sample.highest, 3) + " voxels" +
                 (sample.folds ? "; it folds, so distances are copied, not heights" : ""));
+    if (sample.rough < kMostlyRough)
+        message(ctx, MessageLevel::Note,
+                roundedText(100 * (1 - sample.rough), 2) +
+                    " % of the sample is plain and not copied; `wholeSample` copies it too");
     if (sample.covered < kFewCovered)
         message(ctx, MessageLevel::Warning,
                 roundedText(100 * (1 - sample.covered), 2) +

@@ -7,12 +7,78 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <queue>
+#include <unordered_map>
 
 namespace vdbsynth {
 namespace {
 
 constexpr float kSameRotation = 0.95f;  // cosine between tangents that neighbours in a chart carry to a site
+constexpr double kApartSpacings = 2;    // in a chart, within which only near sites may lie
+constexpr double kFarSpacings = 4;      // on the surface, from which sites are not near
+constexpr double kRingSpacings = 2;
+constexpr double kMostRefused = 0.1;  // share of a ring at which a chart ends
 constexpr std::uint32_t kNever = std::numeric_limits<std::uint32_t>::max();
+
+// Which sites lie where in a chart, so that none is laid over another: growing round a limb, a chart meets
+// itself on the far side in the plane, and would show two places of the surface at one.
+class Occupied {
+public:
+    explicit Occupied(float cell) : mCell(cell) {}
+
+    void clear() { mSites.clear(); }
+    void add(std::uint32_t site, const Vec2f& at) { mSites[key(cellOf(at.x), cellOf(at.y))].push_back(site); }
+
+    /// True if a site that is far on the surface is within a cell's side in the chart.
+    template <typename Far>
+    bool taken(const Vec2f& at, const std::vector<Vec2f>& places, const Far& far) const {
+        const int x = cellOf(at.x), y = cellOf(at.y);
+        for (int i = x - 1; i <= x + 1; ++i)
+            for (int j = y - 1; j <= y + 1; ++j) {
+                const auto found = mSites.find(key(i, j));
+                if (found == mSites.end()) continue;
+                for (std::uint32_t site : found->second)
+                    if (length(places[site] - at) < mCell && far(site)) return true;
+            }
+        return false;
+    }
+
+private:
+    int cellOf(float x) const { return int(std::floor(x / mCell)); }
+    static std::uint64_t key(int x, int y) {
+        return std::uint64_t(std::uint32_t(x)) << 32 | std::uint64_t(std::uint32_t(y));
+    }
+
+    float mCell;
+    std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> mSites;
+};
+
+// How much of every ring round a chart's seed was refused.
+class Rings {
+public:
+    explicit Rings(float width) : mWidth(width) {}
+
+    void count(float distance, bool joined) {
+        const std::size_t ring = std::size_t(distance / mWidth);
+        if (ring >= mJoined.size()) {
+            mJoined.resize(ring + 1);
+            mRefused.resize(ring + 1);
+        }
+        ++(joined ? mJoined : mRefused)[ring];
+    }
+
+    /// True if the ring before that of a distance was refused to more than kMostRefused.
+    bool endBefore(float distance) const {
+        const std::size_t ring = std::size_t(distance / mWidth);
+        if (ring == 0 || ring > mJoined.size()) return false;
+        const double refused = double(mRefused[ring - 1]);
+        return refused > kMostRefused * (refused + double(mJoined[ring - 1]));
+    }
+
+private:
+    float mWidth;
+    std::vector<std::size_t> mJoined, mRefused;
+};
 
 // Charts under construction.
 class Charts {
@@ -24,10 +90,14 @@ public:
           mDiffers(float(options.differs * spacing)),
           mLeastCosine(float(cosine(options.maxRotation * kPi / 180))),
           mSteps(std::uint32_t(std::min(1e6, std::ceil(options.overlap / spacing)))),
+          mFar(float(kFarSpacings * spacing)),
+          mRing(float(kRingSpacings * spacing)),
           mOptions(options),
           mContext(ctx),
+          mOccupied(float(kApartSpacings * spacing)),
           mCovered(sites.size(), 0),
           mChart(sites.size(), kNever),
+          mRefused(sites.size(), kNever),
           mDepth(sites.size(), 0),
           mAt(sites.size()),
           mTangent(sites.size()) {}
@@ -50,6 +120,11 @@ public:
     }
 
 private:
+    struct Member {
+        Vec2f at;
+        Vec3f tangent;
+    };
+
     // The site whose normal differs least from its neighbours'.
     std::uint32_t evenest() const {
         std::uint32_t best = 0;
@@ -88,40 +163,76 @@ private:
         return unreached != steps.end() ? std::uint32_t(unreached - steps.begin()) : last;
     }
 
+    // Outward by the distance from the seed in the chart, until a ring of it is mostly refused.
     ReliefChart grown(std::uint32_t seed, std::uint32_t number) {
         ReliefChart chart;
+        mOccupied.clear();
+        Rings rings(mRing);
+        std::priority_queue<Open> open;
         place(seed, number, {{0, 0}, mField[seed]}, 0);
+        addNeighbours(seed, number, open);
         chart.site.push_back(seed);
-        for (std::size_t k = 0; k < chart.site.size(); ++k) {
-            const std::uint32_t from = chart.site[k];
-            for (std::size_t n = mSites.begin[from]; n < mSites.begin[from + 1]; ++n) {
-                const std::uint32_t to = mSites.neighbours[n];
-                if (mChart[to] == number) continue;
-                const std::uint32_t depth = mCovered[to] ? mDepth[from] + 1 : 0;
-                Member member;
-                if (depth > mSteps || !continued(to, number, member)) continue;
-                place(to, number, member, depth);
-                chart.site.push_back(to);
+        while (!open.empty()) {
+            const Open next = open.top();
+            open.pop();
+            if (mChart[next.site] == number) continue;
+            if (rings.endBefore(next.distance)) break;
+            const std::uint32_t depth = mCovered[next.site] ? mDepth[next.from] + 1 : 0;
+            if (depth > mSteps) continue;
+            Member member;
+            const bool joins = continued(next.site, number, member) && !overlaps(next.site, member);
+            if (!joins && mRefused[next.site] == number) continue;
+            rings.count(next.distance, joins);
+            if (!joins) {
+                mRefused[next.site] = number;
+                continue;
             }
+            place(next.site, number, member, depth);
+            chart.site.push_back(next.site);
+            addNeighbours(next.site, number, open);
         }
+        finish(chart);
+        return chart;
+    }
+
+    void finish(ReliefChart& chart) {
         for (std::uint32_t site : chart.site) {
             chart.at.push_back(mAt[site]);
             mCount += !mCovered[site];
             mCovered[site] = 1;
         }
-        return chart;
     }
 
-    struct Member {
-        Vec2f at;
-        Vec3f tangent;
+    // A site that a chart may take next, nearest to the seed first, ties by number.
+    struct Open {
+        float distance;
+        std::uint32_t site, from;
+        bool operator<(const Open& other) const {
+            return distance != other.distance ? distance > other.distance
+                   : site != other.site       ? site > other.site
+                                              : from > other.from;
+        }
     };
+
+    void addNeighbours(std::uint32_t from, std::uint32_t number, std::priority_queue<Open>& open) const {
+        for (std::size_t n = mSites.begin[from]; n < mSites.begin[from + 1]; ++n) {
+            const std::uint32_t to = mSites.neighbours[n];
+            if (mChart[to] != number) open.push({length(continuedFrom(from, to).at), to, from});
+        }
+    }
+
+    bool overlaps(std::uint32_t site, const Member& member) const {
+        return mOccupied.taken(member.at, mAt, [&](std::uint32_t other) {
+            return length(mSites.point[other] - mSites.point[site]) > mFar;
+        });
+    }
 
     void place(std::uint32_t site, std::uint32_t number, const Member& member, std::uint32_t depth) {
         mChart[site] = number;
         mDepth[site] = depth;
         mAt[site] = member.at;
         mTangent[site] = member.tangent;
+        mOccupied.add(site, member.at);
     }
 
     Member continuedFrom(std::uint32_t from, std::uint32_t to) const {
@@ -158,11 +269,13 @@ private:
     const std::vector<Vec3f>& mField;
     float mDiffers, mLeastCosine;
     std::uint32_t mSteps;
+    float mFar, mRing;
     const ReliefChartOptions& mOptions;
     const RunContext& mContext;
+    Occupied mOccupied;
     std::vector<char> mCovered;
     std::size_t mCount = 0;
-    std::vector<std::uint32_t> mChart, mDepth;
+    std::vector<std::uint32_t> mChart, mRefused, mDepth;
     std::vector<Vec2f> mAt;
     std::vector<Vec3f> mTangent;
 };

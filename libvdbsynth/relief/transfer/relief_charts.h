@@ -15,11 +15,11 @@ struct ReliefChart {
 };
 
 struct ReliefChartOptions {
-    double differs = 0.2;  ///< [spacings] 0..1: how far the places that a site's neighbours in the chart give
+    double differs = 0.3;  ///< [spacings] 0..1: how far the places that a site's neighbours in the chart give
                            ///< it may be from their mean; what is more would be stretched or sheared
     double maxRotation = 30;  ///< [degrees] 0..180: of the chart's u from the sites' tangents
     double overlap = 0;       ///< [sites' unit] at least 0: how far charts run into those before them
-    double covered = 0.98;    ///< 0..1: share of the sites after which no more charts are laid
+    double covered = 0.95;    ///< 0..1: share of the sites after which no more charts are laid
     std::size_t fewest = 64;  ///< sites of a chart that is kept
     std::size_t most = 256;   ///< charts
 };

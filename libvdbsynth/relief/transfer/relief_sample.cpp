@@ -17,6 +17,7 @@ namespace {
 constexpr double kSpacing = 1;       // [voxels] between vertices of a zero level
 constexpr float kMostOverlap = 48;   // [voxels]
 constexpr double kFoldsFrom = 0.01;  // share of the texels that fold, from which distances are copied
+constexpr double kRoughRadii = 1.5;  // of the base, around a place, that tell how rough it is
 constexpr float kHidden = 2;         // [voxels] to which the distances above and below are clamped
 
 // What lies over every texel of an atlas.
@@ -91,6 +92,7 @@ ReliefSample reliefSample(std::shared_ptr<const BaseSurface> base, const PlaceDi
     sample.charts = charts.size();
     packCharts(charts, triangulated(mesh), sites, options.largest, sample, ctx);
     fillChannels(sample, ctx);
+    leavePlainOut(sample, options.rough, kRoughRadii * sample.surface->radius, ctx);
     continueBeyondCharts(sample, ctx);
     return sample;
 }

@@ -31,11 +31,16 @@ struct ReliefSample {
     bool folds = false;
     std::size_t charts = 0;  ///< that the surface was flattened to
     double covered = 1;      ///< share of the surface's sites that charts show
+    double rough = 1;        ///< share of what charts show that is rough enough to be copied
 };
 
 inline constexpr int kChartBorder = 3;  ///< [texels]
 
 struct ReliefSampleOptions {
+    /// 0..1: only where the root mean square height around is at least so much of its 9th decile over the
+    /// sample are there sources: a statue's mane is copied, not its smooth flank. An even relief stays whole.
+    /// 0: everywhere.
+    double rough = 0.5;
     double maxRotation = 30;  ///< [degrees] 0..180: how far charts may be rotated from the tangents
     std::size_t largest = std::size_t(1) << 26;  ///< texels
 };

@@ -18,7 +18,8 @@ public:
         mSum.assign(std::size_t(width + 1) * std::size_t(height + 1), 0);
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x)
-                mSum[at(x + 1, y + 1)] = mSum[at(x, y + 1)] + mSum[at(x + 1, y)] - mSum[at(x, y)] + value(x, y);
+                mSum[at(x + 1, y + 1)] =
+                    mSum[at(x, y + 1)] + mSum[at(x + 1, y)] - mSum[at(x, y)] + value(x, y);
     }
 
     /// Within `reach` along both axes.
@@ -40,20 +41,22 @@ private:
 void leavePlainOut(ReliefSample& sample, double share, double radius, const RunContext& ctx) {
     if (!(share > 0)) return;
     SampleImage& image = sample.image;
-    const auto number = [&](int x, int y) { return std::size_t(y) * std::size_t(image.width) + std::size_t(x); };
+    const auto number = [&](int x, int y) {
+        return std::size_t(y) * std::size_t(image.width) + std::size_t(x);
+    };
     const Sums squares(image.width, image.height, [&](int x, int y) {
         const double h = double(image.values[number(x, y) * std::size_t(image.channels)]);
         return sample.known[number(x, y)] ? h * h : 0;
     });
-    const Sums counts(image.width, image.height, [&](int x, int y) { return sample.known[number(x, y)] ? 1 : 0; });
+    const Sums counts(image.width, image.height,
+                      [&](int x, int y) { return sample.known[number(x, y)] ? 1 : 0; });
     const int reach = std::max(2, int(std::lround(radius)));
     std::vector<float> roughness(image.texels(), 0);
     parallelFor(ctx, std::size_t(image.height), 16, [&](std::size_t begin, std::size_t end) {
         for (int y = int(begin); y < int(end); ++y)
             for (int x = 0; x < image.width; ++x)
-                roughness[number(x, y)] =
-                    float(std::sqrt(std::max(0.0, squares.around(x, y, reach)) /
-                                    std::max(1.0, counts.around(x, y, reach))));
+                roughness[number(x, y)] = float(std::sqrt(std::max(0.0, squares.around(x, y, reach)) /
+                                                          std::max(1.0, counts.around(x, y, reach))));
     });
     std::vector<float> sorted;
     for (std::size_t i = 0; i < roughness.size(); ++i)

@@ -14,6 +14,10 @@ void packCharts(const std::vector<ReliefChart>& charts, const std::vector<Triang
 /// Values of texels that no chart shows: ring by ring the means of those beside them.
 void continueBeyondCharts(ReliefSample& sample, const RunContext& ctx);
 
+/// Takes what is plain from the valid texels (ReliefSampleOptions::rough).
+/// @param radius  [texels] around a texel that counts
+void leavePlainOut(ReliefSample& sample, double share, double radius, const RunContext& ctx);
+
 /// A place on the base and the normal there.
 struct Placed3 {
     Vec3f place, normal;

@@ -1,4 +1,4 @@
-#include "libvdbsynth/relief/density_correlation.h"
+#include "libvdbsynth/relief/growth/density_correlation.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"

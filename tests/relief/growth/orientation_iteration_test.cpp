@@ -1,4 +1,4 @@
-#include "libvdbsynth/relief/orientation_iteration.h"
+#include "libvdbsynth/relief/growth/orientation_iteration.h"
 
 #include "tests/support/contexts.h"
 #include "tests/support/relief_shapes.h"

@@ -1,4 +1,4 @@
-#include "libvdbsynth/relief/grown_relief.h"
+#include "libvdbsynth/relief/growth/grown_relief.h"
 #include "tests/support/relief_shapes.h"
 
 #include <catch2/catch.hpp>

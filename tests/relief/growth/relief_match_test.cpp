@@ -1,4 +1,4 @@
-#include "libvdbsynth/relief/relief_match.h"
+#include "libvdbsynth/relief/growth/relief_match.h"
 
 #include "libvdbsynth/grid/field_sampling.h"
 #include "tests/support/contexts.h"

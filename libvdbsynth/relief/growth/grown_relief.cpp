@@ -1,11 +1,11 @@
-#include "libvdbsynth/relief/grown_relief.h"
+#include "libvdbsynth/relief/growth/grown_relief.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/base/random.h"
 #include "libvdbsynth/geometry/point_neighbours.h"
-#include "libvdbsynth/relief/grown_relief_steps.h"
+#include "libvdbsynth/relief/growth/grown_relief_steps.h"
 
 #include <algorithm>
 #include <cmath>

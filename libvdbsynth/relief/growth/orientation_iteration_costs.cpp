@@ -1,7 +1,7 @@
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/math/smallest_rotation.h"
 #include "libvdbsynth/math/trigonometry.h"
-#include "libvdbsynth/relief/orientation_iteration_steps.h"
+#include "libvdbsynth/relief/growth/orientation_iteration_steps.h"
 
 #include <algorithm>
 #include <limits>

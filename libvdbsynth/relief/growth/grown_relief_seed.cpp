@@ -1,5 +1,5 @@
 #include "libvdbsynth/base/random.h"
-#include "libvdbsynth/relief/grown_relief_steps.h"
+#include "libvdbsynth/relief/growth/grown_relief_steps.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
-#include "libvdbsynth/relief/relief_distance.h"
-#include "libvdbsynth/relief/relief_sites.h"
+#include "libvdbsynth/relief/growth/relief_distance.h"
+#include "libvdbsynth/relief/growth/relief_sites.h"
 
 #include <cstdint>
 #include <vector>

@@ -1,8 +1,8 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
-#include "libvdbsynth/relief/relief_distance.h"
-#include "libvdbsynth/relief/relief_match.h"
-#include "libvdbsynth/relief/relief_sites.h"
+#include "libvdbsynth/relief/growth/relief_distance.h"
+#include "libvdbsynth/relief/growth/relief_match.h"
+#include "libvdbsynth/relief/growth/relief_sites.h"
 
 #include <cstdint>
 #include <vector>

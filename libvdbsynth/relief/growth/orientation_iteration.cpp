@@ -1,11 +1,11 @@
-#include "libvdbsynth/relief/orientation_iteration.h"
+#include "libvdbsynth/relief/growth/orientation_iteration.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/math/smallest_rotation.h"
-#include "libvdbsynth/relief/grown_relief_steps.h"
-#include "libvdbsynth/relief/orientation_iteration_steps.h"
+#include "libvdbsynth/relief/growth/grown_relief_steps.h"
+#include "libvdbsynth/relief/growth/orientation_iteration_steps.h"
 #include "libvdbsynth/surface/direction_field.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "libvdbsynth/relief/relief_sites.h"
+#include "libvdbsynth/relief/growth/relief_sites.h"
 
 #include "libvdbsynth/math/trigonometry.h"
 #include "tests/support/contexts.h"

@@ -1,4 +1,4 @@
-#include "libvdbsynth/relief/density_correlation.h"
+#include "libvdbsynth/relief/growth/density_correlation.h"
 
 #include "libvdbsynth/base/error.h"
 #include "tests/support/contexts.h"

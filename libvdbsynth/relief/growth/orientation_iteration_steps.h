@@ -1,6 +1,6 @@
 #pragma once
 #include "libvdbsynth/math/vec2.h"
-#include "libvdbsynth/relief/orientation_iteration.h"
+#include "libvdbsynth/relief/growth/orientation_iteration.h"
 
 #include <functional>
 

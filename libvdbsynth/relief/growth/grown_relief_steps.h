@@ -1,5 +1,5 @@
 #pragma once
-#include "libvdbsynth/relief/grown_relief.h"
+#include "libvdbsynth/relief/growth/grown_relief.h"
 
 #include <set>
 

@@ -1,4 +1,4 @@
-#include "libvdbsynth/relief/relief_distance.h"
+#include "libvdbsynth/relief/growth/relief_distance.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/random.h"

@@ -16,6 +16,7 @@ constexpr double kSmallest = 2;            // [voxels] first radius
 constexpr double kSmallestShare = 0.01;    // of the longest side: finer ones take long
 constexpr double kNoise = 1. / 3;          // [voxels] deviation that a lattice may make
 constexpr double kNearlySmallest = 0.25;   // of the growth
+constexpr double kShown = 0.5;             // [voxels] deviation of a relief that can be seen
 constexpr double kGap = 2;                 // growth under which there is a gap
 constexpr double kShareOfLongest = 0.025;  // the radius without a gap
 constexpr double kStepRadius = 1.4;        // samples a radius: variances need no more
@@ -87,6 +88,15 @@ void choose(BaseScale& scale, double longest) {
         return;
     }
     scale.radius = std::clamp(longest * kShareOfLongest, 1.0, std::max(1.0, largestBaseRadius(longest)));
+    // On a coarse model, or one of large bumps, a 40th shows nothing.
+    for (std::size_t i = 0; i < scale.radii.size(); ++i) {
+        if (scale.radii[i] <= scale.radius || scale.deviation[i] < kShown) continue;
+        if (i > 0 && scale.deviation[i - 1] >= kShown) break;
+        scale.radius = scale.radii[i];
+        scale.reason =
+            "the first at which the relief's deviation is over half a voxel, as its spectrum has no gap";
+        return;
+    }
     scale.reason = least > 1e8 ? "a 40th of the model, as no relief stands out of the lattice's noise"
                                : "a 40th of the model, as the relief's spectrum has no gap";
 }

@@ -9,8 +9,9 @@ namespace vdbsynth {
 
 /// A radius for a base, and what it was chosen by.
 struct BaseScale {
-    double radius = 0;              ///< [voxels] for BaseOptions
-    bool gap = false;               ///< false: the spectrum has no gap; the radius is a 40th of the model
+    double radius = 0;  ///< [voxels] for BaseOptions
+    bool gap = false;   ///< false: the spectrum has no gap; the radius is a 40th of the model, or the first
+                        ///< larger one at which the relief's deviation is over half a voxel
     std::vector<double> radii;      ///< [voxels] that were tried, half an octave apart
     std::vector<double> deviation;  ///< [voxels] of each: root mean square of the relief that it takes off
     std::string reason;             ///< why this one, in a sentence

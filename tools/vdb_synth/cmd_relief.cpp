@@ -199,9 +199,17 @@ void relief(Run& run) {
     run.reserveOutputs();
     const Samples samples = loadSamples(run);
     ModelOptions model = run.modelOptions();
+    // Painted masks come with the target's attributes.
+    model.carry = arguments.has("mask-attribute") || arguments.has("mask-image");
     const LevelSet target = run.load(arguments.inputs.back(), model);
     const Mask mask = loadMask(run, voxelSizeOf(*target.grid), options);
     if (mask.isModel) options.maskModel = &mask.model;
+    options.maskAttribute = arguments.text("mask-attribute");
+    if (arguments.has("mask-image")) {
+        run.noteInput(arguments.text("mask-image"));
+        options.maskImage =
+            readTextureSamples({{arguments.text("mask-image"), {}}}, Tiling::Yes, run.context).front().image;
+    }
     if (arguments.has("direction")) options.direction = directionOf(run, "direction");
     if (arguments.has("exemplar-direction"))
         options.exemplarDirection = directionOf(run, "exemplar-direction");

@@ -51,6 +51,16 @@ std::vector<Option> reliefOptionTable() {
             .says("depth inside a model given as --mask over which the relief rises to its full height")
             .otherwiseIs("0, at once")
             .takenBy(relief),
+        option(Kind::Text, "mask-attribute", "NAME")
+            .in(Group::Controls)
+            .says("where to put the relief, as painted on TARGET's vertices: an attribute from 0 to 1, of a "
+                  "colour "
+                  "(Cd) the mean of its channels")
+            .takenBy(relief),
+        file("mask-image", "FILE", {"png", "jpg", "jpeg", "tif", "tiff", "exr", "pgm", "ppm"})
+            .in(Group::Controls)
+            .says("where to put the relief, as painted on TARGET's texture coordinates: white is all of it")
+            .takenBy(relief),
         flag("fit")
             .in(Group::Controls)
             .says("resize a tileable picture by the least that makes whole periods go round TARGET, so that "

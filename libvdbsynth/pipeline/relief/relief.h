@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace vdbsynth {
@@ -50,6 +51,10 @@ struct ReliefOptions {
     double top = 0.1;   ///< [percent] eta of the paper's method
     GridConstPtr mask;  ///< 0..1 over the target, by which strength is multiplied; null: 1
     const LevelSet* maskModel = nullptr;  ///< relief only inside; null: everywhere
+    std::string maskAttribute;  ///< name of a grid among the target's attributes, painted 0..1 (of a colour
+                                ///< the mean of its channels); empty: none
+    std::optional<SampleImage>
+        maskImage;     ///< painted on the target's texture coordinates, its attribute `uv`
     double fade = 0;   ///< [world] at least 0: depth inside `maskModel` over which the relief rises to full
     bool fit = false;  ///< resizes tileable pictures by the least that makes a whole number of periods round
                        ///< the target, about the axis of `direction` (around)

@@ -4,7 +4,7 @@
 #include "libvdbsynth/distance/zero_level.h"
 #include "libvdbsynth/grid/field_sampling.h"
 #include "libvdbsynth/pipeline/relief/relief_steps.h"
-#include "libvdbsynth/relief/growth/grown_relief.h"
+#include "libvdbsynth/relief/growth/orientation_iteration.h"
 #include "libvdbsynth/relief/relief_layer.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
@@ -61,13 +61,17 @@ BrickField grownOnTarget(const ReliefSample& sample, const PreparedTarget& prepa
     const float texel = float(result.texel / prepared.place.voxelSize);
     const ReliefSites sites = sitesOfSample(sample, texel, ctx);
     const SurfaceSites targetSites = sitesOfPoints(target.point, target.normal, kNeighbours, ctx);
-    const std::vector<Vec3f> tangent = siteTangents(targetSites, target.direction, 1, nullptr, ctx);
     const BaseSurface& base = *sample.surface;
     const ReliefDistance distance(base.scan, {0, 0, 0}, double(texel), base.reach);
     GrownReliefOptions grow;
     grow.neighbourhood = options.neighbourhood / prepared.place.voxelSize;
     grow.top = options.top;
-    const GrownRelief grown = growRelief(sites, distance, targetSites, tangent, grow, ctx);
+    // Without a direction the orientation is found by iteration.
+    const GrownRelief grown =
+        options.direction
+            ? growRelief(sites, distance, targetSites,
+                         siteTangents(targetSites, target.direction, 1, nullptr, ctx), grow, ctx)
+            : growAndOrient(sites, distance, targetSites, grow, {}, ctx).relief;
     result.mismatch = grown.grownMean;
     const Mesh mesh = displacedMesh(target, grown.displacement, float(options.strength), ctx);
     const FloatGridPtr solid = meshToSolid(mesh, 1, kLimit, "the target with relief", {}, ctx);

@@ -1,4 +1,5 @@
 // The target of a relief.
+#include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/grid/field_sampling.h"
 #include "libvdbsynth/math/trigonometry.h"
@@ -42,9 +43,55 @@ void maskByModel(const ReliefOptions& options, PreparedTarget& prepared, const R
     }
 }
 
+// A grid that came with the target. @throw Error Unusable
+GridPtr attributeOf(const LevelSet& model, const std::string& name, const std::string& field) {
+    std::string known;
+    for (const GridPtr& grid : model.attributes) {
+        if (grid->getName() == name) return grid;
+        known += (known.empty() ? "" : ", ") + grid->getName();
+    }
+    throw Error(ErrorCode::Unusable, "`" + field + "`: the target has no " + name +
+                                         (known.empty() ? "; it has no attributes" : "; it has " + known));
+}
+
+// What is painted on vertices, or in a grid.
+void maskByAttribute(const LevelSet& model, const ReliefOptions& options, PreparedTarget& prepared) {
+    const GridPtr grid = attributeOf(model, options.maskAttribute, "maskAttribute");
+    GridReader colours = vectorReader(*grid, GridSampling::Linear);
+    const GridReader numbers =
+        colours ? GridReader{} : scalarReader(*grid, GridSampling::Linear, "`maskAttribute`");
+    for (std::size_t i = 0; i < prepared.target.point.size(); ++i) {
+        const Vec3d world = prepared.place.world(prepared.target.point[i]);
+        double share = 0;
+        if (colours) {
+            const Vec3d c = colours(world).value;
+            share = (c.x + c.y + c.z) / 3;
+        } else {
+            share = numbers(world).value.z;
+        }
+        prepared.target.strength[i] *= float(std::clamp(share, 0.0, 1.0));
+    }
+}
+
+// The nearest voxel's coordinates, as those between voxels mean nothing where charts meet.
+void maskByImage(const LevelSet& model, const ReliefOptions& options, PreparedTarget& prepared) {
+    const GridPtr grid = attributeOf(model, "uv", "maskImage");
+    const GridReader read = vectorReader(*grid, GridSampling::Nearest);
+    if (!read) throw Error(ErrorCode::Unusable, "`maskImage`: the target's uv are no vectors");
+    const SampleImage& image = *options.maskImage;
+    std::vector<float> values(std::size_t(image.channels));
+    for (std::size_t i = 0; i < prepared.target.point.size(); ++i) {
+        const Vec3d uv = read(prepared.place.world(prepared.target.point[i])).value;
+        readLinear(image, {float(uv.x * image.width), float(uv.y * image.height)}, values.data());
+        float sum = 0;
+        for (float v : values) sum += v;
+        prepared.target.strength[i] *= std::clamp(sum / float(values.size()), 0.f, 1.f);
+    }
+}
+
 void applyMasks(const LevelSet& model, const ReliefOptions& options, PreparedTarget& prepared,
                 const RunContext& ctx) {
-    if (!options.mask && !options.maskModel) return;
+    if (!options.mask && !options.maskModel && options.maskAttribute.empty() && !options.maskImage) return;
     ReliefTarget& target = prepared.target;
     target.strength.assign(target.point.size(), 1);
     if (options.mask) {
@@ -57,6 +104,8 @@ void applyMasks(const LevelSet& model, const ReliefOptions& options, PreparedTar
         multiply(target.strength, target.point, weight);
     }
     if (options.maskModel) maskByModel(options, prepared, ctx);
+    if (!options.maskAttribute.empty()) maskByAttribute(model, options, prepared);
+    if (options.maskImage) maskByImage(model, options, prepared);
 }
 
 }  // namespace

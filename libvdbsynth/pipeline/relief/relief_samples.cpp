@@ -1,6 +1,7 @@
 // The samples of a relief.
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/coordinates/sample_features.h"
 #include "libvdbsynth/pipeline/relief/relief_extract.h"
 #include "libvdbsynth/pipeline/relief/relief_steps.h"
 #include "libvdbsynth/relief/relief_layer.h"
@@ -15,6 +16,7 @@ namespace {
 
 constexpr double kNothing = 0.05;  // [voxels] root mean square of heights under which there is no relief
 constexpr double kMostlyRough = 0.9;
+constexpr double kSeenVoxels = 0.45;  // sigma of what a voxel sees
 constexpr double kFewCovered = 0.85;  // share of a scan under which a warning says what is not shown
 
 double deviationOf(const ReliefSample& sample) {
@@ -41,7 +43,9 @@ ReliefSample sampleOfPicture(const ReliefSource& source, double texel, double vo
     for (float v : heights.values) mean += double(v);
     mean /= double(heights.values.size());
     for (float& v : heights.values) v = float((double(v) - mean) * high / texel);
-    return reliefSample(std::move(heights));
+    // Pixels finer than voxels are seen by these as means.
+    const double sigma = texel < voxelSize ? kSeenVoxels * voxelSize / texel : 0;
+    return reliefSample(smoothed(heights, sigma, ctx));
 }
 
 ReliefSample sampleOfScan(const ReliefSource& source, const ReliefOptions& options, ReliefResult& result,

@@ -6,16 +6,19 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/raster_file.h"
 #include "libvdbsynth/pipeline/convert/outputs.h"
 #include "libvdbsynth/pipeline/relief/relief.h"
+#include "libvdbsynth/pipeline/relief/relief_bake.h"
 #include "libvdbsynth/pipeline/texture/texture_sample.h"
 #include "libvdbsynth/vdb/control_grids.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <iterator>
 
 namespace vdbsynth::cli {
 namespace {
@@ -166,6 +169,47 @@ Mask loadMask(Run& run, double voxelSize, ReliefOptions& options) {
     return mask;
 }
 
+bool isBaked(const std::string& path) {
+    return extensionOf(path) == "png" || extensionOf(path) == "exr";
+}
+
+// The outputs that are pictures on the target's coordinates; what is left are models.
+std::vector<std::string> takeBaked(const Arguments& arguments, std::vector<std::string>& paths) {
+    std::vector<std::string> baked;
+    if (!arguments.has("bake")) {
+        for (const char* name : {"bake-size", "bake-bits"})
+            if (arguments.has(name))
+                throw Error(ErrorCode::InvalidOption,
+                            std::string("--") + name + ": has no effect without --bake");
+        return baked;
+    }
+    std::copy_if(paths.begin(), paths.end(), std::back_inserter(baked), isBaked);
+    paths.erase(std::remove_if(paths.begin(), paths.end(), isBaked), paths.end());
+    if (baked.empty()) throw Error(ErrorCode::InvalidOption, "--bake: needs a .png or .exr output");
+    if (!isMeshPath(arguments.inputs.back()))
+        throw Error(ErrorCode::InvalidOption,
+                    "--bake: " + arguments.inputs.back() + " is no mesh with texture coordinates");
+    for (const std::string& path : baked)
+        if (bakedReliefOf(path) == BakedRelief::Vector && extensionOf(path) != "exr")
+            throw Error(ErrorCode::InvalidOption, path + ": vectors are written as .exr");
+    return baked;
+}
+
+void bake(Run& run, const std::vector<std::string>& paths, const ReliefResult& result) {
+    if (paths.empty()) return;
+    const std::string& name = run.arguments.inputs.back();
+    Mesh mesh = readMesh(name, run.context);
+    const double scale = run.modelOptions().unitScale;
+    mesh.origin = mesh.origin * scale;
+    for (Vec3f& p : mesh.points) p = p * float(scale);
+    ReliefBakeOptions options;
+    options.size = run.arguments.whole("bake-size");
+    options.bits = run.arguments.text("bake-bits") == "8" ? 8 : 16;
+    options.reach = result.reach;
+    for (const std::string& path : paths)
+        bakeRelief(mesh, result.model, name, path, options, run.outputs(), run.context);
+}
+
 void report(Run& run, const ReliefResult& result, const ReliefOptions& options) {
     nlohmann::json levels = nlohmann::json::array();
     for (const CoordinateLevelStats& level : result.levels)
@@ -193,7 +237,8 @@ void relief(Run& run) {
     run.requireInputs(2, 33);
     ReliefOptions options = parseOptions(arguments);
     checkSamples(arguments);
-    const std::vector<std::string> paths = run.outputPaths();
+    std::vector<std::string> paths = run.outputPaths();
+    const std::vector<std::string> baked = takeBaked(arguments, paths);
     requireOutputPaths(paths);
     for (const std::string& path : arguments.inputs) requireModelPath(path);
     run.reserveOutputs();
@@ -221,7 +266,8 @@ void relief(Run& run) {
     outputs.adaptivity = arguments.real("adaptivity");
     outputs.extraGrids = result.sources;
     outputs.metadata = run.metadata();
-    writeModel(result.model, paths, outputs, run.outputs(), run.context);
+    if (!paths.empty()) writeModel(result.model, paths, outputs, run.outputs(), run.context);
+    bake(run, baked, result);
     report(run, result, options);
     run.finish();
 }

@@ -221,18 +221,26 @@ std::vector<Option> outputTable() {
                 "bake .png and .exr outputs onto the target's own texture coordinates: the map that ends the "
                 "file's name (x_roughness.png), else the colour; <UDIM> in a name writes a picture for each "
                 "tile")
-            .takenBy({"texture", "repeat"}),
+            .takenBy({"texture", "repeat", "relief"})
+            .butFor("relief",
+                    [](Option& o) {
+                        o.says(
+                            "bake .png and .exr outputs onto TARGET's own texture coordinates: x_normal.png "
+                            "holds normals, x_vector.exr vectors along u, v and normal, other names the "
+                            "displacement along the normal; <UDIM> in a name writes a picture for each tile");
+                    }),
         whole("bake-size", "N", 16, 16384)
             .in(Group::Output)
             .measuredIn(Unit::Pixels)
             .says("side of a baked picture")
             .initially("1024")
-            .takenBy({"texture", "repeat"}),
+            .takenBy({"texture", "repeat", "relief"}),
         choice("bake-bits", "BITS", {{"8", ""}, {"16", ""}})
             .in(Group::Output)
             .says("bits of a value in a baked .png")
             .initially("8")
-            .takenBy({"texture", "repeat"}),
+            .takenBy({"texture", "repeat", "relief"})
+            .butFor("relief", [](Option& o) { o.initially("16"); }),
         real("adaptivity", "A", 0, 1)
             .in(Group::Output)
             .says("merge flat parts of a mesh output")

@@ -156,6 +156,7 @@ ReliefResult transferred(const std::vector<ReliefSource>& sources, const LevelSe
     transfer.minWall = options.minWall / voxelSize;
     transfer.synthesis = options.synthesis;
     const float reach = reliefReach(samples, transfer);
+    result.reach = double(reach) * voxelSize;
     if (reach > kMostReach)
         throw Error(ErrorCode::Unusable, "the relief would reach " + roundedText(double(reach), 3) +
                                              " voxels from the target, over " +

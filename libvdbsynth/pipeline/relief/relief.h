@@ -70,13 +70,14 @@ struct ReliefResult {
                                    ///< `exemplar`, and of scans Vec3S `source` [voxels of the scan]
     std::vector<CoordinateLevelStats> levels;
     std::vector<Vec3d> singularities;  ///< [world] of the target's directions
-    double texel = 1;                  ///< [world of the target] that a sample's texel is wide
-    double baseRadius = 0;             ///< [world] of the first scan's base; 0 for pictures
-    std::vector<double> covered;       ///< of each scan, share of its surface that was flattened
-    bool folds = false;                ///< distances were copied, not heights
-    double unchanged = 0;              ///< share of the target's band that keeps its bits
-    double fitted = 1;                 ///< by which `fit` resized the picture
-    double mismatch = 0;               ///< [texels^2] mean of eq. 1, of the paper's method
+    double reach = 0;             ///< [world] from the target within which its distances may have changed
+    double texel = 1;             ///< [world of the target] that a sample's texel is wide
+    double baseRadius = 0;        ///< [world] of the first scan's base; 0 for pictures
+    std::vector<double> covered;  ///< of each scan, share of its surface that was flattened
+    bool folds = false;           ///< distances were copied, not heights
+    double unchanged = 0;         ///< share of the target's band that keeps its bits
+    double fitted = 1;            ///< by which `fit` resized the picture
+    double mismatch = 0;          ///< [texels^2] mean of eq. 1, of the paper's method
 };
 
 /// Grows the relief of samples on a target: each sample's base and relief (relief_extract.h), flattened

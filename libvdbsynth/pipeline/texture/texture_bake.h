@@ -2,24 +2,20 @@
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/io/output_set.h"
 #include "libvdbsynth/pipeline/texture/texture.h"
+#include "libvdbsynth/pipeline/texture/uv_bake.h"
 
 #include <string>
 #include <vector>
 
 namespace vdbsynth {
 
-/// [pixels] by which a baked picture extends beyond its charts.
-inline constexpr int kBakePadding = 8;
-
 /// The map that a picture of this name holds: that whose name ends the file's name, before the extension, a
 /// <UDIM> and a tile's number (steel_roughness.png, normal.<UDIM>.exr); else the colour.
 const SampleMap& bakedMap(const std::string& path, const TextureSample& sample);
 
-/// Bakes a map onto the target's own texture coordinates (attribute `uv`): every pixel inside a triangle
-/// takes the value at the coordinate that the triangle's corners give there (texture/corner_coordinates.h),
-/// by cubic convolution; charts are padded by kBakePadding pixels, the rest is 0. Where <UDIM> is in the
-/// path, a picture for each tile that a triangle reaches, 1001 + u + 10 v; else what lies beyond 0..1 is left
-/// out with a warning. A map named `normal` is rotated from the sample's axes to those of the target's own
+/// Bakes a map onto the target's own texture coordinates (attribute `uv`, uv_bake.h): every pixel takes the
+/// value at the coordinate that its triangle's corners give there (texture/corner_coordinates.h), by cubic
+/// convolution. A map named `normal` is rotated from the sample's axes to those of the target's own
 /// coordinates.
 /// @param bits  of .png, 8 or 16; .exr holds floats
 /// @throw Error Unusable (no `uv`, no face inside, more than 100 tiles), Memory, Io

@@ -1,6 +1,7 @@
 #include "libvdbsynth/pipeline/relief/relief_bake.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/grid/field_sampling.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/pipeline/relief/relief_steps.h"
@@ -147,7 +148,7 @@ void bakeRelief(const Mesh& target, const LevelSet& result, const std::string& n
             path + ": holds " +
                 (what == BakedRelief::Normal   ? "normals"
                  : what == BakedRelief::Vector ? "displacement along u, v and normal (world)"
-                 : png ? "displacement: half is 0, white " + std::to_string(options.reach) + " (world)"
+                 : png ? "displacement: half is 0, white " + roundedText(options.reach, 4) + " (world)"
                        : "displacement along the normal (world)"));
 }
 

@@ -39,6 +39,7 @@ void compare(Run& run) {
     if (run.arguments.has("stationary")) options.stationary = run.arguments.axes("stationary");
     if (run.arguments.has("process")) readProcess(run.arguments.text("process"), options.process.emplace());
     options.fresh = run.arguments.whole("fresh");
+    if (run.arguments.has("relief-radius")) options.reliefRadius = run.arguments.real("relief-radius");
     if (run.arguments.has("fresh") && !options.process)
         throw Error(ErrorCode::InvalidOption, "--fresh: needs --process, the process to sample");
     const std::vector<std::string>& paths = run.arguments.inputs;

@@ -87,6 +87,26 @@ void appendCounts(const Comparison& comparison, std::size_t i, std::string& text
                     std::to_string(model->thicknessCoarsening) + " voxels\n";
 }
 
+// Heights in world units, so that models of different voxels compare.
+void appendRelief(const ModelStatistics& a, const ModelStatistics& b, std::string& text) {
+    if (!a.relief || !b.relief) return;
+    const auto row = [&](const std::string& name, double of, double other) {
+        text += column(name, kName) + column(shortNumber(of), 2 * kNumber) + shortNumber(other) + "\n";
+    };
+    text += "\nrelief (world)\n";
+    row("Sa", a.relief->sa * a.voxelSize, b.relief->sa * b.voxelSize);
+    row("Sq", a.relief->sq * a.voxelSize, b.relief->sq * b.voxelSize);
+    row("Ssk", a.relief->ssk, b.relief->ssk);
+    row("Sku", a.relief->sku, b.relief->sku);
+    const std::size_t octaves = std::min(a.relief->octaves.size(), b.relief->octaves.size());
+    for (std::size_t i = 0; i < octaves; ++i) {
+        const ReliefOctave &of = a.relief->octaves[i], &other = b.relief->octaves[i];
+        row("waves of " + shortNumber(of.shortest * a.voxelSize) + " to " +
+                shortNumber(of.longest * a.voxelSize),
+            of.deviation * a.voxelSize, other.deviation * b.voxelSize);
+    }
+}
+
 void appendDistances(const Comparison& comparison, std::size_t i, std::string& text) {
     const ModelDistances& d = comparison.distances[i];
     text += "\n" + column("distances (voxels), patches of", kName);
@@ -153,6 +173,19 @@ Json partsJson(const Components& parts) {
                                                               parts.sizes.begin() + std::ptrdiff_t(count))}};
 }
 
+Json reliefJson(const ReliefStatistics& relief, double voxel) {
+    Json octaves = Json::array();
+    for (const ReliefOctave& octave : relief.octaves)
+        octaves.push_back({{"shortest_wave", octave.shortest * voxel},
+                           {"longest_wave", octave.longest * voxel},
+                           {"deviation", octave.deviation * voxel}});
+    return Json{{"Sa", relief.sa * voxel},
+                {"Sq", relief.sq * voxel},
+                {"Ssk", relief.ssk},
+                {"Sku", relief.sku},
+                {"octaves", octaves}};
+}
+
 Json modelJson(const ModelStatistics& model) {
     Json statistics = Json::array();
     for (const Statistic& statistic : model.statistics) {
@@ -171,21 +204,23 @@ Json modelJson(const ModelStatistics& model) {
         }
         statistics.push_back(entry);
     }
-    return Json{{"name", model.name},
-                {"kind", model.domainRecorded ? "texture" : "object"},
-                {"domain", boxJson(model.domain)},
-                {"voxel_size", model.voxelSize},
-                {"statistics", statistics},
-                {"solid", partsJson(model.topology.solid)},
-                {"void", partsJson(model.topology.empty)},
-                {"enclosed_voids", model.topology.enclosed},
-                {"euler_characteristic", model.topology.eulerCharacteristic},
-                {"tunnels", model.domainRecorded ? Json(nullptr) : Json(model.topology.tunnels)},
-                {"crumbs", model.islands},
-                {"gradient_error_mean", model.gradient.mean},
-                {"gradient_error_p99", model.gradient.percentile99},
-                {"band_completeness", model.bandCompleteness},
-                {"thickness_sample_voxels", model.thicknessCoarsening}};
+    Json json{{"name", model.name},
+              {"kind", model.domainRecorded ? "texture" : "object"},
+              {"domain", boxJson(model.domain)},
+              {"voxel_size", model.voxelSize},
+              {"statistics", statistics},
+              {"solid", partsJson(model.topology.solid)},
+              {"void", partsJson(model.topology.empty)},
+              {"enclosed_voids", model.topology.enclosed},
+              {"euler_characteristic", model.topology.eulerCharacteristic},
+              {"tunnels", model.domainRecorded ? Json(nullptr) : Json(model.topology.tunnels)},
+              {"crumbs", model.islands},
+              {"gradient_error_mean", model.gradient.mean},
+              {"gradient_error_p99", model.gradient.percentile99},
+              {"band_completeness", model.bandCompleteness},
+              {"thickness_sample_voxels", model.thicknessCoarsening}};
+    if (model.relief) json["relief"] = reliefJson(*model.relief, model.voxelSize);
+    return json;
 }
 
 Json noveltyJson(const ModelDistances& d) {
@@ -288,6 +323,7 @@ std::string comparisonText(const Comparison& comparison) {
             appendStatistics(comparison, i, true, text);
         }
         appendCounts(comparison, i, text);
+        appendRelief(comparison.reference, comparison.others[i], text);
         appendDistances(comparison, i, text);
         appendVerdict(comparison, i, text);
     }

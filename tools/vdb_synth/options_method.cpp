@@ -288,6 +288,9 @@ std::vector<Option> matchTable() {
             .initially("10")
             .noting("with --process")
             .takenBy({"compare"}),
+        worldLength("relief-radius", "R")
+            .says("also compare relief: heights over a base of this radius, as relief-extract --base-radius")
+            .takenBy({"compare"}),
         file("map", "FILE.vdb", {"vdb"})
             .says("source map of OTHER")
             .otherwiseIs("the one in OTHER")

@@ -1,6 +1,8 @@
 #include "libvdbsynth/pipeline/compare/compare_steps.h"
+#include "libvdbsynth/pipeline/relief/relief_extract.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/vdb/source_map_grids.h"
 
@@ -42,6 +44,16 @@ std::size_t countIslands(const MeasuredModel& model, const Topology& topology, s
         model.beyond == Beyond::Void ? topology.solid.sizes : topology.solid.interior;
     return std::size_t(
         std::count_if(sizes.begin(), sizes.end(), [&](std::uint64_t size) { return size < limit; }));
+}
+
+ReliefStatistics reliefOf(const CompareInput& input, double radius, const RunContext& ctx) {
+    ReliefExtractOptions options;
+    options.baseRadius = radius;
+    try {
+        return extractRelief(input.model, options, ctx).statistics;
+    } catch (const Error& error) {
+        throw Error(error.code(), input.name + ": relief: " + error.what());
+    }
 }
 
 ModelStatistics statisticsOf(const CompareInput& input, const PreparedModel& prepared, int reach,
@@ -211,6 +223,7 @@ Comparison compared(const CompareInput& reference, const std::vector<CompareInpu
     for (const CompareInput& other : others) sizes.push_back(other.model.domain.size());
     result.reach = reachFor(sizes);
     result.reference = statisticsOf(reference, to, result.reach, ctx);
+    if (options.reliefRadius) result.reference.relief = reliefOf(reference, *options.reliefRadius, ctx);
     result.islandLimit = islandLimitOf(result.reference.topology);
     const Spread spread = parts.empty() ? Spread{} : spreadOf(to, parts, result.reach, ctx);
     std::vector<ScaleProjections> projections;
@@ -219,6 +232,7 @@ Comparison compared(const CompareInput& reference, const std::vector<CompareInpu
         PreparedModel from = prepareModel(other.name, other.model, coarsening, ctx);
         result.others.push_back(statisticsOf(other, from, result.reach, ctx));
         ModelStatistics& statistics = result.others.back();
+        if (options.reliefRadius) statistics.relief = reliefOf(other, *options.reliefRadius, ctx);
         statistics.islands = countIslands(from.model, statistics.topology, result.islandLimit);
         result.distances.push_back(distancesOf(reference, to, other, from, ctx));
         if (!parts.empty())
@@ -237,6 +251,9 @@ void validate(const CompareOptions& options, const CompareInput& reference,
               const std::vector<CompareInput>& others) {
     requireOption(options.fresh >= 2 && options.fresh <= 100, "fresh", std::to_string(options.fresh),
                   "a whole number from 2 to 100");
+    if (options.reliefRadius)
+        requireOption(*options.reliefRadius > 0 && *options.reliefRadius < 1e30, "reliefRadius",
+                      roundedText(*options.reliefRadius, 6), "above 0 (world)");
     const auto nameOf = [](const CompareInput& input) {
         return input.name.empty() ? std::string("a model") : input.name;
     };

@@ -3,6 +3,7 @@
 #include "libvdbsynth/map/source_map.h"
 #include "libvdbsynth/measure/measures.h"
 #include "libvdbsynth/procedural/exemplar.h"
+#include "libvdbsynth/relief/relief_statistics.h"
 #include "libvdbsynth/vdb/level_set.h"
 
 #include <array>
@@ -19,6 +20,9 @@ struct CompareOptions {
     /// The process that the reference is a sample of: gives the yardstick. Its size is the reference's.
     std::optional<ExemplarOptions> process;
     int fresh = 10;  ///< fresh samples of it, 2..100
+    /// [world] radius of the base from which relief is measured (pipeline/relief/relief_extract.h), the same
+    /// for all models; empty: relief is not measured.
+    std::optional<double> reliefRadius;
 };
 
 /// One model to compare with the reference.
@@ -49,7 +53,8 @@ struct ModelStatistics {
     double bandCompleteness =
         1;                    ///< share of the voxels within one of the surface whose neighbours are active
     std::size_t islands = 0;  ///< parts smaller than the smallest hundredth of the reference's
-    int thicknessCoarsening = 1;  ///< side of the samples that thickness was measured on [voxels]
+    std::optional<ReliefStatistics> relief;  ///< [voxels], if CompareOptions::reliefRadius asks for it
+    int thicknessCoarsening = 1;             ///< side of the samples that thickness was measured on [voxels]
 };
 
 /// Where a result's sources were found.

@@ -371,3 +371,16 @@ TEST_CASE("compareModels: an object has no pores, and no row, verdict or yardsti
     const Comparison textures = compared(texture, made("balls", 32, 5), options);
     CHECK(textures.yardsticks.size() == c.yardsticks.size() + 3);
 }
+
+TEST_CASE("compareModels: relief is measured over a base of one radius", "[pipeline]") {
+    CompareOptions options;
+    options.reliefRadius = 3;
+    const Comparison c = compared(made("foam", 48), made("foam", 48), options);
+    REQUIRE(c.reference.relief.has_value());
+    REQUIRE(c.others.front().relief.has_value());
+    CHECK(c.reference.relief->sq > 0.01);
+    CHECK(c.reference.relief->sq == c.others.front().relief->sq);
+    CHECK_FALSE(compared(ball(10), ball(10)).reference.relief.has_value());
+    options.reliefRadius = 0;
+    CHECK_THROWS_AS(compared(ball(10), ball(10), options), Error);
+}

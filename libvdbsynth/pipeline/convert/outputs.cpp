@@ -85,7 +85,7 @@ void sayLost(const std::string& path, const Mesh& mesh, const RunContext& ctx) {
     message(ctx, MessageLevel::Detail, path + ": a unit of the world is a millimetre");
 }
 
-constexpr double kSliverTolerance = 0.1;  // [voxels] that removing slivers may move the surface
+constexpr double kSliverTolerance = 0.2;  // [voxels] that removing slivers may move the surface
 
 // Merging flat parts leaves triangles of all shapes; without merging there are few slivers.
 void removeSliversOfMerging(const LevelSet& model, Mesh& mesh, const RunContext& ctx) {

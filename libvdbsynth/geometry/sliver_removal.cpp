@@ -7,6 +7,7 @@
 #include "libvdbsynth/math/trigonometry.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -15,29 +16,31 @@ namespace {
 
 constexpr int kMostRounds = 30;  // real meshes need three to six
 
-// Worst first; of equals the first.
-std::vector<std::size_t> sliversOf(const SliverSurface& surface) {
+using Faces = std::vector<std::size_t>;
+
+// The slivers of some faces, worst first; of equals the first.
+Faces sliversOf(const SliverSurface& surface, const Faces& faces) {
     std::vector<std::pair<double, std::size_t>> found;
-    for (std::size_t face = 0; face < surface.size(); ++face)
+    for (std::size_t face : faces)
         if (surface.isSliver(face)) found.push_back({surface.sineOf(face), face});
     std::sort(found.begin(), found.end());
-    std::vector<std::size_t> slivers;
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    Faces slivers;
     for (const auto& [sine, face] : found) slivers.push_back(face);
     return slivers;
 }
 
-// @return false if nothing could be improved
-bool improve(SliverSurface& surface, const std::vector<std::size_t>& slivers, SliverResult& result,
-             const RunContext& ctx) {
+// @return the faces that changed
+Faces improve(SliverSurface& surface, const Faces& slivers, SliverResult& result, const RunContext& ctx) {
     Stage stage(ctx, "removing slivers", std::max<std::size_t>(1, slivers.size()));
-    bool changed = false;
+    Faces changed;
     for (std::size_t face : slivers) {
         stage.advance();
         SliverChange change;
         if (!surface.isSliver(face) || !surface.bestChange(face, change)) continue;
         surface.apply(change);
         ++(change.flip ? result.flips : result.collapses);
-        changed = true;
+        changed.insert(changed.end(), change.removed.begin(), change.removed.end());
     }
     return changed;
 }
@@ -85,10 +88,16 @@ SliverResult removeSlivers(Mesh& mesh, const SliverOptions& options, const RunCo
     const std::vector<Triangle> before = triangulated(mesh);
     SliverSurface surface(std::move(points), before, sine(options.angle * kDegree), options.tolerance);
     SliverResult result;
-    std::vector<std::size_t> slivers = sliversOf(surface);
+    Faces all(surface.size());
+    std::iota(all.begin(), all.end(), std::size_t(0));
+    Faces slivers = sliversOf(surface, all);
     result.before = slivers.size();
-    for (int round = 0; round < kMostRounds && improve(surface, slivers, result, ctx); ++round)
-        slivers = sliversOf(surface);
+    for (int round = 0; round < kMostRounds; ++round) {
+        const Faces changed = improve(surface, slivers, result, ctx);
+        if (changed.empty()) break;
+        slivers.insert(slivers.end(), changed.begin(), changed.end());
+        slivers = sliversOf(surface, slivers);
+    }
     result.left = slivers.size();
     keepUsed(mesh, before, surface.triangles());
     return result;

@@ -34,7 +34,7 @@ struct MinimalWall {
 /// @param field  distances [voxels], negative in the solid, at least in a narrow band; a box that begins at 0
 /// @return none if less than `share` of the rays leave the solid within the box
 /// @throw Error InvalidOption, BadData (as requireField), EmptyInput (no surface), Cancelled
-/// @par Cost    O(cells of the surface), 0.1 seconds for a model of 128^3 voxels and two cores
+/// @par Cost    O(cells of the surface), 0.25 seconds of one core for a ball that fills 128^3 voxels
 /// @par Repeats same bits for any number of threads
 std::optional<MinimalWall> minimalWall(const BrickField& field, const MinimalWallOptions& options = {},
                                        const RunContext& ctx = {});

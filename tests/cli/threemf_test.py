@@ -52,6 +52,19 @@ class ThreeMf(CliTest):
     def info(self, name):
         return json.loads(self.ok("info", name, "--json").stdout)
 
+    def test_the_minimal_wall_is_said_and_reported(self):
+        mesh = model('<object id="1" type="model"><mesh><vertices>' + "".join(
+            f'<vertex x="{20 * x}" y="{20 * y}" z="{2 * z}"/>' for x, y, z in CORNERS) + "</vertices><triangles>" + "".join(
+            f'<triangle v1="{a}" v2="{b}" v3="{c}"/><triangle v1="{a}" v2="{c}" v3="{d}"/>' for a, b, c, d in QUADS) +
+            "</triangles></mesh></object>", '<item objectid="1"/>')
+        self.write("plate.3mf", package({"3D/3dmodel.model": mesh}))
+        for name, verbose, said in (("o.stl", ["-v"], True), ("o.3mf", ["-v"], True), ("o.obj", ["-v"], False), ("o.stl", [], False)):
+            done = self.ok("convert", "plate.3mf", "-o", name, "--voxel-size", "0.5", "--report", "r.json", "--force", *verbose)
+            self.assertEqual("minimal wall 2 (world), near" in done.stderr, said)
+            counts = json.loads(self.read("r.json"))["counts"]
+            self.assertAlmostEqual(counts["minimal_wall"], 2, delta=0.15)
+            self.assertEqual(len(counts["minimal_wall_at"]), 3)
+
     def root(self, name):
         archive = zipfile.ZipFile(self.path(name))
         self.assertIsNone(archive.testzip())

@@ -11,6 +11,7 @@
 #include "tools/vdb_synth/stop_flag.h"
 #include "tools/vdb_synth/surface_json.h"
 #include "tools/vdb_synth/version.h"
+#include "tools/vdb_synth/wall_report.h"
 
 #include <nlohmann/json.hpp>
 
@@ -241,6 +242,7 @@ GridPtr Run::loadGrid(const std::string& option, const std::string& text) {
 
 void Run::describe(const LevelSet& result) {
     count("active_voxels", activeVoxels(*result.grid));
+    reportWall(*this, result);
     if (!arguments.has("report")) return;
     if (result.source) count("input_surface", surfaceJson(*result.source, context));
     count("surface", surfaceJson(levelSetToMesh(*result.grid, {}, context), context));

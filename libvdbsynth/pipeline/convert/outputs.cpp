@@ -5,6 +5,7 @@
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/distance/close_field.h"
+#include "libvdbsynth/geometry/sliver_removal.h"
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/raster_file.h"
@@ -84,6 +85,20 @@ void sayLost(const std::string& path, const Mesh& mesh, const RunContext& ctx) {
     message(ctx, MessageLevel::Detail, path + ": a unit of the world is a millimetre");
 }
 
+constexpr double kSliverTolerance = 0.2;  // [voxels] that removing slivers may move the surface
+
+// Merging flat parts leaves triangles of all shapes; without merging there are few slivers.
+void removeSliversOfMerging(const LevelSet& model, Mesh& mesh, const RunContext& ctx) {
+    SliverOptions options;
+    options.tolerance = kSliverTolerance * voxelSizeOf(*model.grid);
+    const SliverResult result = removeSlivers(mesh, options, ctx);
+    message(ctx, MessageLevel::Detail,
+            "mesh: removed " + std::to_string(result.before - result.left) + " of " +
+                std::to_string(result.before) + " slivers (an angle under " + roundedText(options.angle, 3) +
+                " degrees), left " + std::to_string(result.left) + " in " +
+                std::to_string(mesh.triangles.size()) + " triangles");
+}
+
 void writeOne(const LevelSet& model, const std::string& path, const std::string& temporary,
               const ModelOutputOptions& options, std::optional<Mesh>& mesh, const RunContext& ctx) {
     if (extensionOf(path) == "vdb") {
@@ -108,6 +123,7 @@ void writeOne(const LevelSet& model, const std::string& path, const std::string&
         meshing.sharp = options.sharp;
         meshing.source = model.source.get();
         mesh = levelSetToMesh(*model.grid, meshing, ctx);
+        if (options.adaptivity > 0) removeSliversOfMerging(model, *mesh, ctx);
         mesh->attributes = gridsToAttributes(model.attributes, mesh->points, mesh->origin, ctx);
     }
     MeshFormat format{};

@@ -29,8 +29,9 @@ void requireOutputPaths(const std::vector<std::string>& paths);
 
 /// Writes one model to every path, its kind by extension: .vdb, .obj, .ply, .stl, .off, .glb, .gltf, .3mf;
 /// .png (16 bits) and .exr hold the height of the topmost surface over the domain, one pixel per voxel. The
-/// mesh is made once. What .3mf has no place for is a note. Nothing is renamed into place; `outputs.commit()`
-/// does that.
+/// mesh is made once; with `adaptivity` slivers are removed from it (geometry/sliver_removal.h), which moves
+/// the surface by at most 0.2 voxels and no vertex, and a detail says how many are left. What .3mf has no
+/// place for is a note. Nothing is renamed into place; `outputs.commit()` does that.
 /// @throw Error as validate and requireModel (vdb/level_set.h); Io, EmptyInput (no surface to mesh)
 /// @par Repeats byte for byte for equal models and metadata
 void writeModel(const LevelSet& model, const std::vector<std::string>& paths,

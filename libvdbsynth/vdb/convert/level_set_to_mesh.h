@@ -16,9 +16,9 @@ struct MeshingOptions {
 void validate(const MeshingOptions& options);
 
 /// The zero level as a closed manifold mesh with outward faces. With sharp: see zero_level.h. Else OpenVDB's
-/// dual marching cubes, then two Newton steps that move each vertex onto the trilinear zero level (OpenVDB's
-/// own are up to a tenth of a voxel inside curved surfaces), then touching sheets are separated
-/// (geometry/mesh.h).
+/// dual marching cubes, then two Newton steps (with adaptivity eight) that move each vertex onto the
+/// trilinear zero level (OpenVDB's own are up to a tenth of a voxel inside curved surfaces, of merged cells
+/// up to some voxels away), then touching sheets are separated (geometry/mesh.h).
 /// @throw Error InvalidOption (`adaptivity`, `sharp`), EmptyInput (no zero level), Cancelled
 /// @par Repeats same bits for any number of threads
 Mesh levelSetToMesh(const openvdb::FloatGrid& grid, const MeshingOptions& options = {},

@@ -13,13 +13,16 @@
 namespace vdbsynth {
 namespace {
 
+// Vertices of merged cells begin up to some voxels away.
+constexpr int kSteps = 2, kStepsOfMerged = 8;
+
 // volumeToMesh puts a vertex at the mean of its cell's edge crossings, up to a tenth of a voxel inside a
 // curved surface; this moves it onto the zero level.
-void projectToZero(const openvdb::FloatGrid& grid, Mesh& mesh, const RunContext& ctx) {
+void projectToZero(const openvdb::FloatGrid& grid, Mesh& mesh, int steps, const RunContext& ctx) {
     parallelFor(ctx, mesh.points.size(), 4096, [&](std::size_t begin, std::size_t end) {
         TrilinearSampler sampler(grid);
         for (std::size_t i = begin; i < end; ++i)
-            for (int step = 0; step < 2; ++step) {
+            for (int step = 0; step < steps; ++step) {
                 Vec3d gradient;
                 const Vec3d p = cast<double>(mesh.points[i]);
                 const double value = sampler.sample(p, gradient);
@@ -54,7 +57,7 @@ Mesh zeroLevelInIndexSpace(const openvdb::FloatGrid& grid, double adaptivity, co
     // OpenVDB's faces run clockwise seen from outside; ours run the other way.
     for (const openvdb::Vec3I& t : triangles) mesh.triangles.push_back({t[2], t[1], t[0]});
     for (const openvdb::Vec4I& q : quads) mesh.quads.push_back({q[3], q[2], q[1], q[0]});
-    projectToZero(*indexGrid, mesh, ctx);
+    projectToZero(*indexGrid, mesh, adaptivity > 0 ? kStepsOfMerged : kSteps, ctx);
     return mesh;
 }
 

@@ -1,14 +1,18 @@
 #include "libvdbsynth/pipeline/convert/outputs.h"
 
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/Interpolation.h>
 #include <catch2/catch.hpp>
 
 #include <algorithm>
 
+#include "libvdbsynth/geometry/sliver_removal.h"
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/point_file.h"
 #include "libvdbsynth/io/raster_file.h"
+#include "libvdbsynth/pipeline/convert/model.h"
 #include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
 #include "tests/support/makers.h"
 #include "tests/support/said.h"
 #include "tests/support/temporary_folder.h"
@@ -215,4 +219,77 @@ TEST_CASE("writeModel: what .3mf has no place for is a note", "[pipeline][error]
     write(model, {folder.path("o.3mf")}, {}, said.ctx);
     CHECK(said.noted("o.3mf: .3mf has no place for heat"));
     CHECK(readMesh(folder.path("o.3mf")).attributes.empty());
+}
+
+namespace {
+
+// The share [percent] of triangles with an angle under 5 degrees.
+double sliverShare(const Mesh& mesh) {
+    Mesh copy = mesh;
+    return 100.0 * double(removeSlivers(copy, {}).before) / double(triangulated(mesh).size());
+}
+
+// [voxels] the farthest that a vertex is from the zero level, by the grid's trilinear value.
+double farthestVertex(const LevelSet& model, const Mesh& mesh) {
+    const openvdb::tools::GridSampler<openvdb::FloatGrid, openvdb::tools::BoxSampler> sampler(*model.grid);
+    double farthest = 0;
+    for (const Vec3f& p : mesh.points)
+        farthest = std::max(farthest, std::abs(double(sampler.wsSample({p.x, p.y, p.z}))));
+    return farthest / voxelSizeOf(*model.grid);
+}
+
+}  // namespace
+
+TEST_CASE("writeModel: merged meshes of real models have hardly any slivers", "[pipeline][property]") {
+    if (test::sample("").empty()) return;
+    const test::TemporaryFolder folder;
+    for (const char* name : {"bunny.off", "3holes.off", "fandisk.obj"})
+        for (double adaptivity : {0.3, 1.0}) {
+            INFO(name << " " << adaptivity);
+            const LevelSet model = loadModel(test::sample(std::string("meshes/") + name), {});
+            MeshingOptions meshing;
+            meshing.adaptivity = adaptivity;
+            const Mesh before = levelSetToMesh(*model.grid, meshing);
+            ModelOutputOptions options;
+            options.adaptivity = adaptivity;
+            std::vector<std::string> details;
+            RunContext ctx;
+            ctx.onMessage = [&](MessageLevel level, const std::string& text) {
+                if (level == MessageLevel::Detail) details.push_back(text);
+            };
+            write(model, {folder.path("m.ply")}, options, ctx);
+            CHECK(std::any_of(details.begin(), details.end(), [](const std::string& text) {
+                return test::contains(text, "slivers (an angle under 5 degrees)");
+            }));
+            const Mesh after = readMesh(folder.path("m.ply"));
+            CHECK(sliverShare(before) > 0.1);
+            CHECK(sliverShare(after) < 0.1);
+            const MeshSummary was = summarize(before), is = summarize(after);
+            CHECK(is.closedManifold());
+            CHECK(is.signedVolume == Approx(was.signedVolume).epsilon(1e-3));
+            // Euler number of a closed mesh of triangles.
+            CHECK(2 * long(is.vertices) - long(is.faces) ==
+                  2 * long(was.vertices) - long(triangulated(before).size()));
+            CHECK(farthestVertex(model, after) < 0.1);
+            CHECK(farthestVertex(model, after) <= farthestVertex(model, before));
+        }
+}
+
+TEST_CASE("writeModel: attributes follow the vertices that stay", "[pipeline][property]") {
+    const test::TemporaryFolder folder;
+    LevelSet model = ball();
+    const auto height = openvdb::FloatGrid::create(0.f);
+    height->setName("height");
+    height->setTransform(model.grid->transform().copy());
+    for (auto at = model.grid->cbeginValueOn(); at; ++at)
+        height->tree().setValue(at.getCoord(), float(height->indexToWorld(at.getCoord()).z()));
+    model.attributes = {height};
+    ModelOutputOptions options;
+    options.adaptivity = 1;
+    write(model, {folder.path("m.ply")}, options);
+    const Mesh mesh = readMesh(folder.path("m.ply"));
+    const Attribute* heights = findAttribute(mesh.attributes, "height");
+    REQUIRE((heights && heights->values.size() == mesh.points.size()));
+    for (std::size_t i = 0; i < mesh.points.size(); ++i)
+        REQUIRE(heights->values[i] == Approx(mesh.points[i].z).margin(0.05));
 }

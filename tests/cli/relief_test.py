@@ -68,9 +68,10 @@ class Relief(Case):
         self.assertIn("flattened to", said)
         self.assertIn("a voxel of the sample is 0.0125 wide", said)
         counts = self.counts()
-        self.assertEqual(counts["base_radius"], 3.5)
+        self.assertAlmostEqual(counts["base_radius"], 3.5)
         self.assertGreater(counts["flattened_share"][0], 0.7)
-        self.assertEqual([len(counts["levels"]), counts["texel"]], [len(counts["levels"]) or 1, 0.0125])
+        self.assertTrue(counts["levels"])
+        self.assertAlmostEqual(counts["texel"], 0.0125)
         grids = {g["name"] for g in self.info("r.vdb")["grids"]}
         self.assertLessEqual({"surface", "source_u", "source_v", "exemplar", "source"}, grids)
         for name in ("r.obj", "r.stl", "r.3mf"):
@@ -84,8 +85,8 @@ class Relief(Case):
         self.assertIn("whole periods go round", said)
         side = self.side("w.obj")
         # 126 voxels round, 4 pictures of 2 waves.
-        part = [2 / len(side) * sum(r * f(8 * t) for t, r in side) for f in (math.cos, math.sin)]
-        self.assertAlmostEqual(math.hypot(*part), 100 / 255, delta=0.05 * 100 / 255)
+        part = [2 / len(side) * sum((r - 10) * f(8 * t) for t, r in side) for f in (math.cos, math.sin)]
+        self.assertAlmostEqual(math.hypot(*part), 200 / 255, delta=0.05 * 200 / 255)
         self.assertAlmostEqual(self.counts()["fitted"], 2 * math.pi * 10 / 0.5 / 128, delta=0.01)
 
     def test_height_pixels_scale_and_strength(self):
@@ -96,7 +97,7 @@ class Relief(Case):
             mean = sum(radii) / len(radii)
             return (sum((r - mean)**2 for r in radii) / len(radii))**0.5
         one = deviation("one.obj", "--height", 1)
-        self.assertAlmostEqual(one, 100 / 255 / 2 * 2**-0.5, delta=0.02)
+        self.assertAlmostEqual(one, 100 / 255 * 2**-0.5, delta=0.02)
         self.assertAlmostEqual(deviation("two.obj", "--height", 1, "--strength", 2), 2 * one, delta=0.15 * one)
         self.assertAlmostEqual(deviation("down.obj", "--height", 1, "--strength", -1), one, delta=0.1 * one)
         self.assertLess(deviation("none.obj", "--height", 1, "--strength", 0), 0.02)
@@ -104,11 +105,9 @@ class Relief(Case):
         self.assertIn("a voxel of the sample is 0.9 wide", wide)
 
     def test_strength_0_is_the_target(self):
-        self.ok("convert", "c.vdb", "-o", "plain.obj")
-        self.ok("relief", "waves.png", "c.vdb", "-o", "same.obj", "--strength", 0)
-        before, after = obj_points(self.read("plain.obj")), obj_points(self.read("same.obj"))
-        self.assertEqual(len(before), len(after))
-        self.assertLess(max(math.dist(a, b) for a, b in zip(sorted(before), sorted(after))), 0.02)
+        self.ok("relief", "waves.png", "c.vdb", "-o", "same.vdb", "--strength", 0)
+        answer = json.loads(self.ok("compare", "c.vdb", "same.vdb", "--json").stdout)
+        self.assertLess(answer["others"][0]["distances"]["surface"]["hausdorff"], 0.05)
 
     def test_same_bytes_on_any_number_of_threads(self):
         self.ok("make", "balls", "b.vdb", "--resolution", 40)
@@ -179,8 +178,8 @@ class Masks(Case):
 
     def lines(self, name, keep):
         """Vertices as written, of those a condition keeps."""
-        rows = [line for line in self.read(name).decode().splitlines() if line.startswith("v ")]
-        return sorted(row for row in rows if keep(*map(float, row.split()[1:4])))
+        rows = [line.split()[1:4] for line in self.read(name).decode().splitlines() if line.startswith("v ")]
+        return sorted(" ".join(row) for row in rows if keep(*map(float, row)))
 
     def check(self, name):
         """The lower half is the target's digit for digit, the upper one is not."""
@@ -212,7 +211,6 @@ class Masks(Case):
 
     def test_painted(self):
         """Vertex colours, an attribute, and an image on texture coordinates."""
-        self.ok("convert", "c.vdb", "-o", "p.ply")
         points = obj_points(self.read("plain.obj"))
         faces = [[int(w.split("/")[0]) for w in line.split()[1:]] for line in self.read("plain.obj").decode().splitlines() if line.startswith("f ")]
         def ply(kind, value):
@@ -229,7 +227,7 @@ class Masks(Case):
                 self.ok("relief", "waves.png", name, "-o", "m.obj", "--voxel-size", 0.5, "--mask-attribute", attribute, "--force")
                 self.check("m.obj")
         self.fails(1, "has no paint", "relief", "waves.png", "colour.ply", "-o", "n.obj", "--mask-attribute", "paint")
-        rows = "".join(f"v {x:.9g} {y:.9g} {z:.9g}\n" for x, y, z in points) + "".join(f"vt 0.5 {z / 30:.6f}\n" for _, _, z in points)
+        rows = "".join(f"v {x:.9g} {y:.9g} {z:.9g}\n" for x, y, z in points) + "".join(f"vt 0.5 {0.01 + 0.98 * z / 30:.6f}\n" for _, _, z in points)
         self.write("uv.obj", rows + "".join("f " + " ".join(f"{i}/{i}" for i in f) + "\n" for f in faces))
         self.write("paint.png", png(8, 64, lambda x, y: (255 * (y < 32),), kind=0))
         self.ok("convert", "uv.obj", "-o", "plain.obj", "--voxel-size", 0.5, "--force")
@@ -268,9 +266,7 @@ class Hostile(Case):
         self.write("triangle.off", "OFF\n3 1 0\n0 0 0\n9 0 0\n0 9 0\n3 0 1 2\n")
         self.fails(1, "--open shell", "relief", "triangle.off", "c.vdb", "-o", "x.vdb")
         self.ok("make", "balls", "b.vdb", "--resolution", 32)
-        self.ok("mask", "ball", "-o", "ball.vdb", "--center", "0,0,0", "--radius", 12)
-        self.ok("convert", "cylinder.off", "-o", "long.vdb", "--resolution", 60)
-        self.fails(1, "too small for a base", "relief", "b.vdb", "c.vdb", "-o", "x.vdb", "--base-radius", 300)
+        self.fails(1, "no base is left", "relief", "b.vdb", "c.vdb", "-o", "x.vdb", "--base-radius", 300)
         self.fails(3, "missing.off", "relief", "missing.off", "c.vdb", "-o", "x.vdb")
         self.fails(3, "missing.off", "relief", "waves.png", "missing.off", "-o", "x.vdb")
 
@@ -281,7 +277,7 @@ class Hostile(Case):
         self.assertTrue(self.info("t.obj")["closed_manifold"])
         self.write("open.off", cylinder(10, 30, caps=False))
         said = self.ok("relief", "waves.png", "open.off", "-o", "o.obj", "--resolution", 40).stderr
-        self.assertIn("128 open edges", said)
+        self.assertIn("256 open edges", said)
         self.assertTrue(self.info("o.obj")["closed_manifold"])
         # Smaller than the relief: the sample's waves are 8 of its 6 voxels.
         self.ok("relief", "waves.png", "cylinder.off", "-o", "small.vdb", "--resolution", 6)

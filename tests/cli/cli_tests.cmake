@@ -15,6 +15,7 @@ add_cli_test(path_test Attributes Doors StandardStreams MainPath Determinism Wor
 add_cli_test(error_test BadOptions BadFiles Disk Signals)
 add_cli_test(readme_test Readme)
 add_cli_test(relief_extract_test ReliefExtract)
+add_cli_test(relief_test Relief Masks Hostile)
 add_cli_test(repeat_test Repeat)
 add_cli_test(reported_gltf_test Gltf)
 add_cli_test(reported_images_test Images)

@@ -172,7 +172,7 @@ ReliefResult transferred(const std::vector<ReliefSource>& sources, const LevelSe
         field = reliefOnTarget(prepared.target, samples, map, transfer, ctx);
     }
     result.model = finished(field, prepared, target, options, ctx);
-    if (masked(prepared.target) && options.method == ReliefMethod::Default &&
+    if ((masked(prepared.target) || options.strength == 0) && options.method == ReliefMethod::Default &&
         std::abs(halfWidthOf(*target.grid) - double(options.halfWidth)) < 1e-6)
         result.unchanged = keepUnchanged(*target.grid, changedVoxels(field, prepared), options.halfWidth,
                                          *result.model.grid);

@@ -4,7 +4,6 @@
 #include "libvdbsynth/pipeline/analogy/analogy.h"
 #include "libvdbsynth/pipeline/texture/texture_target.h"
 #include "libvdbsynth/relief/base_surface.h"
-#include "libvdbsynth/relief/relief_statistics.h"
 #include "libvdbsynth/vdb/level_set.h"
 
 #include <cstdint>

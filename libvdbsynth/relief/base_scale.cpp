@@ -54,7 +54,7 @@ std::vector<double> deviationsOf(const BrickField& scan, const Mesh& surface,
         if (step != distances.step) {
             std::size_t last = i;
             while (last + 1 < radii.size() && stepOf(radii[last + 1]) == step) ++last;
-            distances = latticeDistances(scan, surface, step, 5 * float(radii[last]), band, ctx);
+            distances = latticeDistances(scan, step, 5 * float(radii[last]), band, ctx);
         }
         deviations.push_back(deviationAt(distances, surface, radii[i], ctx));
         stage.advance();

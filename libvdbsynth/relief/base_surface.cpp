@@ -2,8 +2,6 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
-#include "libvdbsynth/distance/rebuild_band.h"
-#include "libvdbsynth/distance/widen_band.h"
 #include "libvdbsynth/distance/zero_level.h"
 #include "libvdbsynth/grid/field_sampling.h"
 #include "libvdbsynth/relief/base_surface_steps.h"
@@ -33,13 +31,6 @@ BrickField firstOrder(const BrickField& field, float limit, const RunContext& ct
             // Next to a medial axis a short gradient would make distances too long.
             *samples++ = std::clamp(*v / std::max(length(gradient), 0.5f), -limit, limit);
         });
-    });
-}
-
-BrickField overBox(const BrickField& field, const IndexBox& box, float limit, const RunContext& ctx) {
-    return BrickField::generate(box, ctx, [&](const IndexBox& brick, float* samples) {
-        field.readBox(brick.min, brick.size(), samples);
-        for (int i = 0; i < BrickField::kSamples; ++i) samples[i] = std::clamp(samples[i], -limit, limit);
     });
 }
 
@@ -93,14 +84,10 @@ BaseSurface baseFromField(const BrickField& scan, const SmoothField& smooth, con
     BaseSurface base;
     base.radius = options.radius;
     measureRelief(base, distancesFromBase(smooth, surface, ctx), options);
-    RebuildOptions rebuild;
-    rebuild.halfWidth = base.reach;
-    rebuild.keepDistances = true;
-    rebuild.band = base.reach + 1;
     const BrickField field =
         firstOrder(refined(smooth, scan.box(), 2 * base.reach + 4, ctx), base.reach + 1, ctx);
-    base.distance = overBox(rebuiltBand(field, rebuild, ctx), scan.box(), base.reach, ctx);
-    base.scan = widenBand({scan, scan.box(), options.band}, base.reach, ctx);
+    base.distance = widenedDistances(field, base.reach + 1, 1, base.reach, ctx).field;
+    base.scan = widenedDistances(scan, options.band, 1, base.reach, ctx).field;
     if (zeroLevel(base.distance, scan.box(), Facing::Outward, ctx).faceCount() == 0)
         throw Error(ErrorCode::EmptyInput, "`radius` " + roundedText(options.radius, 4) +
                                                " voxels: no base is left of the model; use a smaller one");
@@ -117,7 +104,7 @@ BaseSurface baseSurface(const BrickField& scan, const BaseOptions& options, cons
     const int step = smoothingStep(options.radius);
     const float reach = kRadiiReached * float(options.radius);
     const SmoothField distances =
-        latticeDistances(scan, surface, step, reach, options.band, ctx, options.kind != BaseKind::Normals);
+        latticeDistances(scan, step, reach, options.band, ctx, options.kind != BaseKind::Normals);
     stage.advance();
     const SmoothField smooth = smoothOf(distances, options, ctx);
     stage.advance();

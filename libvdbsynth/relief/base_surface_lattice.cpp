@@ -13,6 +13,7 @@ namespace {
 
 // A wave of a step's length would read as none at all without a mean over the step.
 constexpr double kStepsOfMean = 0.5;
+constexpr float kReachOfMeans = 2.5f;  // steps
 constexpr int kLargestStep = 4;        // keeps the band in which those means are taken narrow
 constexpr double kRadiusOfStep = 2.5;  // samples within a radius, for cubic polynomials
 
@@ -44,12 +45,17 @@ int smoothingStep(double radius) {
     return std::clamp(int(radius / kRadiusOfStep), 1, kLargestStep);
 }
 
-SmoothField latticeDistances(const BrickField& scan, int step, float reach, float band, const RunContext& ctx,
+float wideReach(int step, float reach) {
+    return step <= kFarStep ? reach : kReachOfMeans * float(step) + 1;
+}
+
+SmoothField latticeDistances(const WideDistances& scan, int step, float reach, const RunContext& ctx,
                              bool means) {
-    if (step == 1) return widenedDistances(scan, band, 1, reach, ctx);
-    const float side = float(step), known = 2.5f * side + 1;
-    const BrickField wide = widenedDistances(scan, band, 1, known, ctx).field;
-    BrickField exact = widenedDistances(wide, known, step, reach, ctx).field;
+    if (step == 1) return {joined(scan, reach, ctx), 1};
+    const float side = float(step), known = kReachOfMeans * side + 1;
+    const BrickField wide = joined(scan, known, ctx);
+    BrickField exact =
+        step == kFarStep ? scan.far.field : widenedDistances(wide, known, step, reach, ctx).field;
     if (!means) return {std::move(exact), step};
     // Far from the surface the distances bend so little that a mean of three samples is the same.
     const BrickField far = gaussianMean(exact, kStepsOfMean, ctx);
@@ -66,6 +72,14 @@ SmoothField latticeDistances(const BrickField& scan, int step, float reach, floa
         });
     });
     return {std::move(both), step};
+}
+
+SmoothField coarserMeans(const SmoothField& means, const RunContext& ctx) {
+    // Variances add up: of a mean over twice the samples three quarters are missing.
+    const BrickField wider = gaussianMean(means.field, std::sqrt(3.0) * kStepsOfMean, ctx);
+    const BrickField every = BrickField::fromVoxels(latticeBox(means.field.box(), 2), ctx,
+                                                    [&](const Index3& p) { return wider.at(p * 2); });
+    return {every, 2 * means.step};
 }
 
 SmoothField smoothedDistances(const SmoothField& distances, BaseKind kind, double radius,

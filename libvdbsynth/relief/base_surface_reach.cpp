@@ -296,32 +296,36 @@ IndexBox latticeBox(const IndexBox& box, int step) {
 
 namespace {
 
-constexpr float kNear = 4;  // [voxels] that distances are found for on every voxel
-constexpr int kFarStep = 2;
+constexpr float kBlended = 1;  // [voxels] in which near distances pass over to far ones
 
-// Near the surface its own distances, farther away those of a lattice.
-BrickField joined(const BrickField& near, const SmoothField& far, float reach, const RunContext& ctx) {
-    const BrickField wide = refined(far, near.box(), reach, ctx);
+}  // namespace
+
+WideDistances wideDistances(const BrickField& field, float band, float reach, const RunContext& ctx) {
+    WideDistances wide;
+    wide.near = widenedDistances(field, band, 1, kNearReach, ctx).field;
+    wide.far = widenedDistances(wide.near, kNearReach, kFarStep, reach, ctx);
+    return wide;
+}
+
+BrickField joined(const WideDistances& wide, float reach, const RunContext& ctx) {
+    const BrickField& near = wide.near;
+    const BrickField far = refined(wide.far, near.box(), reach, ctx);
     return BrickField::generate(near.box(), ctx, [&](const IndexBox& brick, float* samples) {
-        float own[BrickField::kSamples];
-        wide.readBox(brick.min, brick.size(), samples);
+        float own[kSamples];
+        far.readBox(brick.min, brick.size(), samples);
         near.readBox(brick.min, brick.size(), own);
         for (int i = 0; i < kSamples; ++i) {
-            const float length = std::abs(own[i]), share = std::clamp(length - kNear + 1, 0.f, 1.f);
-            const float both = length + share * (std::max(std::abs(samples[i]), kNear - 1) - length);
+            const float length = std::abs(own[i]), least = kNearReach - kBlended;
+            const float share = std::clamp((length - least) / kBlended, 0.f, 1.f);
+            const float both =
+                std::min(reach, length + share * (std::max(std::abs(samples[i]), least) - length));
             samples[i] = own[i] < 0 ? -both : both;
         }
     });
 }
 
-}  // namespace
-
 SmoothField widenedDistances(const BrickField& field, float band, int step, float reach,
                              const RunContext& ctx) {
-    if (step == 1 && reach > kNear + 1) {
-        const BrickField near = widenedDistances(field, band, 1, kNear, ctx).field;
-        return {joined(near, widenedDistances(near, kNear, kFarStep, reach, ctx), reach, ctx), 1};
-    }
     Spreading spreading(field, step, band, reach / float(step), ctx);
     spreading.spread();
     const BrickField far = spreading.distances();

@@ -151,8 +151,10 @@ ReliefExtraction extracted(const LevelSet& model, const ReliefExtractOptions& op
     result.fields = baseSurface(scan.field, of, ctx);
     result.base = levelSetOf(result.fields.distance, result.fields.reach, result, model, "base",
                              options.halfWidth, true, ctx);
-    makeReliefGrids(result, options.halfWidth, ctx);
-    result.statistics = reliefStatistics(result.fields, measuredBox(result, of.radius, ctx), ctx);
+    // Half a voxel more: the level set has distances of its own, and the relief is active where that is.
+    const ReliefLayer layer = reliefLayer(result.fields, float(options.halfWidth) + 0.5f, ctx);
+    makeReliefGrids(result, layer);
+    result.statistics = reliefStatistics(result.fields, measuredBox(result, of.radius, ctx), ctx, &layer);
     compareTopology(result, ctx);
     sayWhatIsLost(result, ctx);
     if (options.strength)

@@ -72,10 +72,11 @@ const std::array<Step, 26>& neighbourSteps() {
     return steps;
 }
 
-// A brick and one layer around it.
+// A brick and one layer around it; kFar where nothing is to be tried.
 struct Padded {
     float distance[kPadded * kPadded * kPadded];
-    std::uint32_t face[kPadded * kPadded * kPadded];
+    std::uint32_t face[kPadded * kPadded * kPadded] = {};
+    bool row[kPadded * kPadded];  // rows along z with something to be tried
 };
 
 // For each voxel of a row the neighbours, by bit, whose faces may be nearer than its own: a face cannot be
@@ -189,14 +190,17 @@ public:
     void propagate() {
         seed();
         const int rounds = int(std::ceil(mHalfWidth));
-        mNext.resize(mNow.size());
-        mNextFresh.resize(mFresh.size());
+        mNext = mNow;
+        mNextFresh.assign(mFresh.size(), 0);
+        mNextChanged.assign(mChanged.size(), 0);
         for (int round = 0; round < rounds; ++round) {
             parallelFor(mContext, mOrigins.size(), 8, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t slot = begin; slot < end; ++slot) relax(slot);
+                Padded padded;
+                for (std::size_t slot = begin; slot < end; ++slot) relax(slot, padded);
             });
             std::swap(mNow, mNext);
             std::swap(mFresh, mNextFresh);
+            std::swap(mChanged, mNextChanged);
         }
     }
 
@@ -256,6 +260,7 @@ private:
         });
         mNow.assign(mOrigins.size() * BrickField::kSamples, Nearest{});
         mFresh.assign(mNow.size(), 0);
+        mChanged.assign(mOrigins.size(), 0);
     }
 
     // For each brick the faces within a voxel of it, in their order.
@@ -304,6 +309,7 @@ private:
                                 const Index3 l = Index3{x, y, z} - mOrigins[slot];
                                 Nearest& here = brick[(l.x * kSide + l.y) * kSide + l.z];
                                 mFresh[slot * BrickField::kSamples + std::size_t(&here - brick)] = 1;
+                                mChanged[slot] = 1;
                                 const Vec3f p{float(x), float(y), float(z)};
                                 if (isBeyond(disc, p, std::min(here.distance, 2.f) + mTolerance)) continue;
                                 const Nearest candidate{std::sqrt(squaredDistance(p - a, ab, ac)), face};
@@ -320,48 +326,67 @@ private:
         bool any = false;
         forEachVoxel({{-1, -1, -1}, {1, 1, 1}}, [&](const Index3& side) {
             const bool own = side == Index3{0, 0, 0};
-            any = padFrom(own ? std::int32_t(slot) : slotOf(origin + side * kSide), side, padded) || any;
+            const std::int32_t from = own ? std::int32_t(slot) : slotOf(origin + side * kSide);
+            if (from < 0 || !mChanged[std::size_t(from)]) return;
+            if (!any) {
+                std::fill(std::begin(padded.distance), std::end(padded.distance), kFar);
+                std::fill(std::begin(padded.row), std::end(padded.row), false);
+            }
+            any = true;
+            padFrom(std::size_t(from), side, padded);
         });
         return any;
     }
 
     // The part of a padded brick that lies in one of the 27 bricks.
-    bool padFrom(std::int32_t from, const Index3& side, Padded& padded) const {
+    void padFrom(std::size_t from, const Index3& side, Padded& padded) const {
         const auto first = [](int d) { return d > 0 ? kSide : d; };
         const auto last = [](int d) { return d < 0 ? -1 : d > 0 ? kSide : kSide - 1; };
-        const std::size_t base = from < 0 ? 0 : std::size_t(from) * BrickField::kSamples;
-        bool any = false;
         for (int x = first(side.x); x <= last(side.x); ++x)
-            for (int y = first(side.y); y <= last(side.y); ++y)
+            for (int y = first(side.y); y <= last(side.y); ++y) {
+                const std::size_t row =
+                    from * BrickField::kSamples + std::size_t(((x & 7) * kSide + (y & 7)) * kSide);
+                const int to = (x + 1) * kPadded + y + 1;
                 for (int z = first(side.z); z <= last(side.z); ++z) {
-                    const std::size_t at = base + std::size_t(((x & 7) * kSide + (y & 7)) * kSide + (z & 7));
-                    const bool fresh = from >= 0 && mFresh[at];
-                    any = any || fresh;
-                    const Nearest& there = fresh ? mNow[at] : kNone;
-                    const int to = ((x + 1) * kPadded + y + 1) * kPadded + z + 1;
-                    padded.distance[to] = there.distance;
-                    padded.face[to] = there.face;
+                    if (!mFresh[row + std::size_t(z & 7)]) continue;
+                    const Nearest& there = mNow[row + std::size_t(z & 7)];
+                    padded.distance[to * kPadded + z + 1] = there.distance;
+                    padded.face[to * kPadded + z + 1] = there.face;
+                    padded.row[to] = true;
                 }
-        return any;
+            }
     }
 
-    void relax(std::size_t slot) {
-        Padded padded;
+    // mNext holds what mNow held a round ago: only what has changed since is copied.
+    void relax(std::size_t slot, Padded& padded) {
         const std::size_t base = slot * BrickField::kSamples;
-        std::copy_n(&mNow[base], BrickField::kSamples, &mNext[base]);
-        std::fill_n(&mNextFresh[base], BrickField::kSamples, std::uint8_t(0));
+        if (mChanged[slot]) std::copy_n(&mNow[base], BrickField::kSamples, &mNext[base]);
+        if (mNextChanged[slot]) std::fill_n(&mNextFresh[base], BrickField::kSamples, std::uint8_t(0));
+        mNextChanged[slot] = 0;
         if (!pad(slot, padded)) return;
-        Nearest* out = &mNext[base];
-        std::uint8_t* fresh = &mNextFresh[base];
         for (int x = 0; x < kSide; ++x)
             for (int y = 0; y < kSide; ++y) {
-                const int centre = ((x + 1) * kPadded + y + 1) * kPadded + 1;
-                std::uint32_t steps[kSide];
-                worthTrying(padded, centre, out, mHalfWidth, steps);
-                for (int z = 0; z < kSide; ++z, ++out, ++fresh)
-                    *fresh = steps[z] &&
-                             relaxOne(mOrigins[slot] + Index3{x, y, z}, padded, centre + z, steps[z], *out);
+                const int row = (x + 1) * kPadded + y + 1;
+                bool any = false;
+                for (const int beside : {-kPadded, 0, kPadded})
+                    any = any || padded.row[row + beside - 1] || padded.row[row + beside] ||
+                          padded.row[row + beside + 1];
+                if (any) relaxRow(slot, {x, y, 0}, row * kPadded + 1, padded);
             }
+    }
+
+    void relaxRow(std::size_t slot, const Index3& first, int centre, const Padded& padded) {
+        const std::size_t begin =
+            slot * BrickField::kSamples + std::size_t((first.x * kSide + first.y) * kSide);
+        std::uint32_t steps[kSide];
+        worthTrying(padded, centre, &mNext[begin], mHalfWidth, steps);
+        for (int z = 0; z < kSide; ++z) {
+            if (!steps[z]) continue;
+            const Index3 p = mOrigins[slot] + first + Index3{0, 0, z};
+            if (!relaxOne(p, padded, centre + z, steps[z], mNext[begin + std::size_t(z)])) continue;
+            mNextFresh[begin + std::size_t(z)] = 1;
+            mNextChanged[slot] = 1;
+        }
     }
 
     // Tries the faces of those neighbours whose bits are set on a voxel; true if one is nearer.
@@ -397,7 +422,8 @@ private:
     std::vector<std::size_t> mFirstFace;  // [slots + 1] where each brick's begin
     std::vector<std::uint32_t> mFaces;    // [slot by slot]
     std::vector<Nearest> mNow, mNext;
-    std::vector<std::uint8_t> mFresh, mNextFresh;  // changed in the last round
+    std::vector<std::uint8_t> mFresh, mNextFresh;      // changed in the last round
+    std::vector<std::uint8_t> mChanged, mNextChanged;  // by brick: any of its voxels has
 };
 
 }  // namespace

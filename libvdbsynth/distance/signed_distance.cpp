@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 
 namespace vdbsynth {
 namespace {
@@ -41,9 +42,17 @@ BrickField keepingDistances(const OffsetField& toMesh, const OffsetField& own, c
     return BrickField::generate(IndexBox::fromSize(size), ctx, [&](const IndexBox& brick, float* samples) {
         constexpr int kPadded = BrickField::kSide + 2;
         constexpr std::ptrdiff_t kStride[3] = {kPadded * kPadded, kPadded, 1};
+        toMesh.field.readBox(brick.min + toMesh.offset, brick.size(), samples);
+        float constant = 0;
+        const Index3 first = brick.min + own.offset;
+        if (own.field.constantIn({first, first + brick.size() - Index3{1, 1, 1}}, constant) &&
+            own.field.box().contains(first) && std::abs(constant) >= band - 1) {
+            if (constant < 0)
+                std::transform(samples, samples + BrickField::kSamples, samples, std::negate<>());
+            return;
+        }
         float padded[kPadded * kPadded * kPadded];
         own.field.readBox(brick.min + own.offset - Index3{1, 1, 1}, {kPadded, kPadded, kPadded}, padded);
-        toMesh.field.readBox(brick.min + toMesh.offset, brick.size(), samples);
         for (int x = 1; x <= BrickField::kSide; ++x)
             for (int y = 1; y <= BrickField::kSide; ++y)
                 for (int z = 1; z <= BrickField::kSide; ++z, ++samples) {

@@ -20,9 +20,15 @@ constexpr double kShown = 0.5;             // [voxels] deviation of a relief tha
 constexpr double kGap = 2;                 // growth under which there is a gap
 constexpr double kShareOfLongest = 0.025;  // the radius without a gap
 constexpr double kStepRadius = 1.4;        // samples a radius: variances need no more
+constexpr int kLargestStep = 64;
 
+// Steps up to 4 as a base's; above twice as wide ones of means.
 int stepOf(double radius) {
-    return std::clamp(int(radius / kStepRadius), 1, 4);
+    const int step = std::max(1, int(radius / kStepRadius));
+    if (step <= 4) return step;
+    int doubled = 4;
+    while (2 * doubled <= std::min(step, kLargestStep)) doubled *= 2;
+    return doubled;
 }
 
 double deviationAt(const SmoothField& distances, const Mesh& surface, double radius, const RunContext& ctx) {
@@ -43,21 +49,30 @@ std::vector<double> radiiOf(double longest) {
     }
 }
 
-// Of radii with one step the distances are the same.
+// Of radii with one step the distances are the same; those of steps over 4 are made of each other.
 std::vector<double> deviationsOf(const BrickField& scan, const Mesh& surface,
                                  const std::vector<double>& radii, float band, const RunContext& ctx) {
     Stage stage(ctx, "finding the relief's scale", std::max<std::size_t>(1, radii.size()));
+    // The farthest that distances on each voxel and each step are needed for.
+    const auto reachOf = [&](int step) {
+        double most = 0;
+        for (const double radius : radii)
+            if (std::min(4, stepOf(radius)) == step) most = std::max(most, 5 * radius);
+        return float(most);
+    };
+    float reach = 0;
+    for (int step = 1; step <= 4; ++step)
+        if (reachOf(step) > 0) reach = std::max(reach, wideReach(step, reachOf(step)));
+    const WideDistances wide = radii.empty() ? WideDistances{} : wideDistances(scan, band, reach, ctx);
     std::vector<double> deviations;
     SmoothField distances;
     distances.step = 0;
-    for (std::size_t i = 0; i < radii.size(); ++i) {
-        const int step = stepOf(radii[i]);
-        if (step != distances.step) {
-            std::size_t last = i;
-            while (last + 1 < radii.size() && stepOf(radii[last + 1]) == step) ++last;
-            distances = latticeDistances(scan, surface, step, 5 * float(radii[last]), band, ctx);
-        }
-        deviations.push_back(deviationAt(distances, surface, radii[i], ctx));
+    for (const double radius : radii) {
+        const int step = stepOf(radius);
+        if (step > distances.step && distances.step < 4)
+            distances = latticeDistances(wide, std::min(4, step), reachOf(std::min(4, step)), ctx);
+        while (distances.step < step) distances = coarserMeans(distances, ctx);
+        deviations.push_back(deviationAt(distances, surface, radius, ctx));
         stage.advance();
     }
     return deviations;

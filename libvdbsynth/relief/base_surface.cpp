@@ -2,8 +2,6 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
-#include "libvdbsynth/distance/rebuild_band.h"
-#include "libvdbsynth/distance/widen_band.h"
 #include "libvdbsynth/distance/zero_level.h"
 #include "libvdbsynth/grid/field_sampling.h"
 #include "libvdbsynth/relief/base_surface_steps.h"
@@ -36,13 +34,6 @@ BrickField firstOrder(const BrickField& field, float limit, const RunContext& ct
     });
 }
 
-BrickField overBox(const BrickField& field, const IndexBox& box, float limit, const RunContext& ctx) {
-    return BrickField::generate(box, ctx, [&](const IndexBox& brick, float* samples) {
-        field.readBox(brick.min, brick.size(), samples);
-        for (int i = 0; i < BrickField::kSamples; ++i) samples[i] = std::clamp(samples[i], -limit, limit);
-    });
-}
-
 SmoothField smoothOf(const SmoothField& distances, const BaseOptions& options, const RunContext& ctx) {
     switch (options.kind) {
         case BaseKind::Flow:
@@ -60,8 +51,25 @@ SmoothField smoothOf(const SmoothField& distances, const BaseOptions& options, c
 void measureRelief(BaseSurface& base, std::vector<float> distances, const BaseOptions& options) {
     std::sort(distances.begin(), distances.end());
     base.amplitude = double(distances[distances.size() - 1 - distances.size() / 1000]);
-    base.reach =
-        std::max(options.reach, float(std::min(1.25 * base.amplitude + 2, 1.5 * options.radius + 4)));
+    base.reach = std::min(std::max(options.reach, float(1.25 * base.amplitude + 2)), largestReach(options));
+}
+
+// True if a field has both signs.
+bool crosses(const BrickField& field) {
+    const Index3 size = field.box().size();
+    bool inside = false, outside = false;
+    for (int x = 0; x < size.x; x += BrickField::kSide)
+        for (int y = 0; y < size.y; y += BrickField::kSide)
+            for (int z = 0; z < size.z; z += BrickField::kSide) {
+                const IndexBox brick = IndexBox::cube(field.box().min + Index3{x, y, z}, BrickField::kSide)
+                                           .intersection(field.box());
+                float constant = 0;
+                const bool one = field.constantIn(brick, constant);
+                forEachVoxel(one ? IndexBox{brick.min, brick.min} : brick,
+                             [&](const Index3& p) { (field.inside(p) < 0 ? inside : outside) = true; });
+                if (inside && outside) return true;
+            }
+    return false;
 }
 
 // The share of the scan's surface that is as far from the base as distances are known. Parts that the base
@@ -88,22 +96,23 @@ int baseMargin(double radius) {
     return int(std::ceil(kRadiiReached * radius)) + 3;
 }
 
-BaseSurface baseFromField(const BrickField& scan, const SmoothField& smooth, const Mesh& surface,
+float largestReach(const BaseOptions& options) {
+    return std::max(options.reach, float(1.5 * options.radius + 4));
+}
+
+BaseSurface baseFromField(const WideDistances& scan, const SmoothField& smooth, const Mesh& surface,
                           const BaseOptions& options, const RunContext& ctx) {
     BaseSurface base;
     base.radius = options.radius;
     measureRelief(base, distancesFromBase(smooth, surface, ctx), options);
-    RebuildOptions rebuild;
-    rebuild.halfWidth = base.reach;
-    rebuild.keepDistances = true;
-    rebuild.band = base.reach + 1;
-    const BrickField field =
-        firstOrder(refined(smooth, scan.box(), 2 * base.reach + 4, ctx), base.reach + 1, ctx);
-    base.distance = overBox(rebuiltBand(field, rebuild, ctx), scan.box(), base.reach, ctx);
-    base.scan = widenBand({scan, scan.box(), options.band}, base.reach, ctx);
-    if (zeroLevel(base.distance, scan.box(), Facing::Outward, ctx).faceCount() == 0)
+    const IndexBox& box = scan.near.box();
+    // Near distances only: farther ones are found from them.
+    const BrickField field = firstOrder(refined(smooth, box, 2 * kNearReach + 4, ctx), kNearReach + 1, ctx);
+    if (!crosses(field))
         throw Error(ErrorCode::EmptyInput, "`radius` " + roundedText(options.radius, 4) +
                                                " voxels: no base is left of the model; use a smaller one");
+    base.distance = joined(wideDistances(field, kNearReach + 1, base.reach, ctx), base.reach, ctx);
+    base.scan = joined(scan, base.reach, ctx);
     base.beyond = shareBeyond(base, surface);
     return base;
 }
@@ -116,12 +125,13 @@ BaseSurface baseSurface(const BrickField& scan, const BaseOptions& options, cons
     if (surface.faceCount() == 0) throw Error(ErrorCode::EmptyInput, "the scan has no surface");
     const int step = smoothingStep(options.radius);
     const float reach = kRadiiReached * float(options.radius);
-    const SmoothField distances =
-        latticeDistances(scan, surface, step, reach, options.band, ctx, options.kind != BaseKind::Normals);
+    const WideDistances wide =
+        wideDistances(scan, options.band, std::max(wideReach(step, reach), largestReach(options)), ctx);
+    const SmoothField distances = latticeDistances(wide, step, reach, ctx, options.kind != BaseKind::Normals);
     stage.advance();
     const SmoothField smooth = smoothOf(distances, options, ctx);
     stage.advance();
-    BaseSurface base = baseFromField(scan, smooth, surface, options, ctx);
+    BaseSurface base = baseFromField(wide, smooth, surface, options, ctx);
     stage.advance();
     return base;
 }

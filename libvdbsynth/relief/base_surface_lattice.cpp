@@ -1,7 +1,5 @@
 // Means of distances on a coarser lattice, and back.
 #include "libvdbsynth/base/parallel.h"
-#include "libvdbsynth/distance/mesh_distance.h"
-#include "libvdbsynth/distance/widen_band.h"
 #include "libvdbsynth/grid/field_sampling.h"
 #include "libvdbsynth/relief/base_surface_steps.h"
 #include "libvdbsynth/relief/gaussian_mean.h"
@@ -15,28 +13,9 @@ namespace {
 
 // A wave of a step's length would read as none at all without a mean over the step.
 constexpr double kStepsOfMean = 0.5;
+constexpr float kReachOfMeans = 2.5f;  // steps
 constexpr int kLargestStep = 4;        // keeps the band in which those means are taken narrow
 constexpr double kRadiusOfStep = 2.5;  // samples within a radius, for cubic polynomials
-
-IndexBox latticeBox(const IndexBox& box, int step) {
-    const Index3 size = box.size();
-    return IndexBox::fromSize({(size.x - 2) / step + 2, (size.y - 2) / step + 2, (size.z - 2) / step + 2});
-}
-
-// Exact distances [voxels] at the lattice's samples.
-BrickField exactDistances(const BrickField& scan, const Mesh& surface, int step, float reach,
-                          const RunContext& ctx) {
-    Mesh coarse = surface;
-    for (Vec3f& p : coarse.points) p = p * (1 / float(step));
-    const BrickField distance = meshDistance(coarse, latticeBox(scan.box(), step), reach / float(step), ctx);
-    return BrickField::generate(distance.box(), ctx, [&](const IndexBox& brick, float* samples) {
-        distance.readBox(brick.min, brick.size(), samples);
-        forEachVoxel(brick, [&](const Index3& p) {
-            *samples *= scan.at(p * step) < 0 ? -float(step) : float(step);
-            ++samples;
-        });
-    });
-}
 
 // The four weights of Catmull-Rom's polynomial at a fraction of a step.
 std::array<float, 4> cubicWeights(float t) {
@@ -66,16 +45,21 @@ int smoothingStep(double radius) {
     return std::clamp(int(radius / kRadiusOfStep), 1, kLargestStep);
 }
 
-SmoothField latticeDistances(const BrickField& scan, const Mesh& surface, int step, float reach, float band,
-                             const RunContext& ctx, bool means) {
-    if (step == 1) return {widenBand({scan, scan.box(), band}, reach, ctx), 1};
-    BrickField exact = exactDistances(scan, surface, step, reach, ctx);
+float wideReach(int step, float reach) {
+    return step <= kFarStep ? reach : kReachOfMeans * float(step) + 1;
+}
+
+SmoothField latticeDistances(const WideDistances& scan, int step, float reach, const RunContext& ctx,
+                             bool means) {
+    if (step == 1) return {joined(scan, reach, ctx), 1};
+    const float side = float(step), known = kReachOfMeans * side + 1;
+    const BrickField wide = joined(scan, known, ctx);
+    BrickField exact =
+        step == kFarStep ? scan.far.field : widenedDistances(wide, known, step, reach, ctx).field;
     if (!means) return {std::move(exact), step};
     // Far from the surface the distances bend so little that a mean of three samples is the same.
     const BrickField far = gaussianMean(exact, kStepsOfMean, ctx);
-    const float side = float(step);
-    const BrickField fine = gaussianMean(widenBand({scan, scan.box(), band}, 2.5f * side + 1, ctx),
-                                         kStepsOfMean * double(step), ctx);
+    const BrickField fine = gaussianMean(wide, kStepsOfMean * double(step), ctx);
     BrickField both = BrickField::generate(exact.box(), ctx, [&](const IndexBox& brick, float* samples) {
         float own[BrickField::kSamples];
         exact.readBox(brick.min, brick.size(), own);
@@ -88,6 +72,14 @@ SmoothField latticeDistances(const BrickField& scan, const Mesh& surface, int st
         });
     });
     return {std::move(both), step};
+}
+
+SmoothField coarserMeans(const SmoothField& means, const RunContext& ctx) {
+    // Variances add up: of a mean over twice the samples three quarters are missing.
+    const BrickField wider = gaussianMean(means.field, std::sqrt(3.0) * kStepsOfMean, ctx);
+    const BrickField every = BrickField::fromVoxels(latticeBox(means.field.box(), 2), ctx,
+                                                    [&](const Index3& p) { return wider.at(p * 2); });
+    return {every, 2 * means.step};
 }
 
 SmoothField smoothedDistances(const SmoothField& distances, BaseKind kind, double radius,

@@ -55,14 +55,19 @@ float zeroBetween(const Line& line, float a, float fa, float b, float fb) {
 
 // Appends the crossings of one direction, +1 or -1, in their order.
 void walk(const Line& line, float direction, std::vector<Crossing>& found) {
+    // Where the base's distance was not read yet: it only matters once there is a crossing.
+    thread_local std::vector<float> unread;
+    unread.clear();
     float place = 0, value = line.scan(0);
     while (place < line.base.reach) {
         // Distances of the scan tell how far away its surface is at least.
         const float step = std::max(kLeastStep, 0.8f * std::abs(value));
         const float next = std::min(place + step, line.base.reach);
-        if (!line.follows(direction * next)) return;
+        unread.push_back(direction * next);
         const float after = line.scan(direction * next);
         if ((after < 0) != (value < 0)) {
+            if (!std::all_of(unread.begin(), unread.end(), [&](float p) { return line.follows(p); })) return;
+            unread.clear();
             const float at = zeroBetween(line, direction * place, value, direction * next, after);
             found.push_back({at, (value < 0) == (direction > 0)});
         }

@@ -70,7 +70,8 @@ void addMoments(const std::vector<Site>& sites, double measured, ReliefStatistic
 
 }  // namespace
 
-ReliefStatistics reliefStatistics(const BaseSurface& base, const IndexBox& box, const RunContext& ctx) {
+ReliefStatistics reliefStatistics(const BaseSurface& base, const IndexBox& box, const RunContext& ctx,
+                                  const ReliefLayer* known) {
     const IndexBox region = box.empty() ? base.distance.box() : box;
     const std::vector<Site> sites = sitesIn(base, region, ctx);
     ReliefStatistics statistics;
@@ -95,7 +96,7 @@ ReliefStatistics reliefStatistics(const BaseSurface& base, const IndexBox& box, 
     if (measured == 0) return statistics;
     statistics.mean = sum / measured;
     addMoments(sites, measured, statistics);
-    statistics.octaves = reliefOctaves(base, region, ctx);
+    statistics.octaves = reliefOctaves(base, region, known, ctx);
     return statistics;
 }
 

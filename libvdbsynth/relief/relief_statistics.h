@@ -2,6 +2,7 @@
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/math/index_box.h"
 #include "libvdbsynth/relief/base_surface.h"
+#include "libvdbsynth/relief/relief_layer.h"
 
 #include <vector>
 
@@ -32,10 +33,11 @@ struct ReliefStatistics {
 /// is M_L - M_2L for L = 4, 8, 16 ... voxels, and what M_4 leaves is the first one. Of a wave of length w it
 /// has 0.5^((L/w)^2) - 0.5^((2L/w)^2), at most 0.47 in amplitude: octaves compare two reliefs; their squares
 /// do not add up to sq^2.
-/// @param box  of the base's voxels; empty: all of it
+/// @param box    of the base's voxels; empty: all of it
+/// @param known  a reliefLayer of the base, at least 1.5 voxels to either side, or null: it is made
 /// @throw Error EmptyInput (no base in the box), Cancelled
 /// @par Cost    as reliefLayer for a layer of three voxels   @par Repeats same bits for any number of threads
 ReliefStatistics reliefStatistics(const BaseSurface& base, const IndexBox& box = {},
-                                  const RunContext& ctx = {});
+                                  const RunContext& ctx = {}, const ReliefLayer* known = nullptr);
 
 }  // namespace vdbsynth

@@ -21,12 +21,24 @@ struct Weighted {
     BrickField sum, weight;
 };
 
-Weighted weightedHeights(const ReliefLayer& layer, const IndexBox& box, const RunContext& ctx) {
+// A layer may reach farther than is measured.
+bool isMeant(const BrickField& base, const ReliefLayer& layer, std::size_t i) {
+    return !layer.point[i].lost && std::abs(base.inside(layer.voxels[i])) < kLayer;
+}
+
+Weighted weightedHeights(const ReliefLayer& layer, const BrickField& base, const RunContext& ctx) {
     const auto fieldOf = [&](bool heights) {
-        return BrickField::fromVoxels(box, ctx, [&](const Index3& p) {
-            const std::int32_t i = layer.voxels.find(p);
-            if (i < 0 || layer.point[std::size_t(i)].lost) return 0.f;
-            return heights ? layer.point[std::size_t(i)].height : 1.f;
+        return BrickField::generate(base.box(), ctx, [&](const IndexBox& brick, float* samples) {
+            float constant = 0;
+            if (base.constantIn(brick, constant) && std::abs(constant) >= kLayer) {
+                std::fill_n(samples, BrickField::kSamples, 0.f);
+                return;
+            }
+            forEachVoxel(brick, [&](const Index3& p) {
+                const std::int32_t i = layer.voxels.find(p);
+                const bool known = i >= 0 && isMeant(base, layer, std::size_t(i));
+                *samples++ = !known ? 0.f : heights ? layer.point[std::size_t(i)].height : 1.f;
+            });
         });
     };
     return {fieldOf(true), fieldOf(false)};
@@ -63,13 +75,15 @@ double deviationOf(const std::vector<float>& fine, const std::vector<float>& coa
 
 }  // namespace
 
-std::vector<ReliefOctave> reliefOctaves(const BaseSurface& base, const IndexBox& box, const RunContext& ctx) {
-    const ReliefLayer layer = reliefLayer(base, kLayer, ctx);
-    Weighted fields = weightedHeights(layer, base.distance.box(), ctx);
+std::vector<ReliefOctave> reliefOctaves(const BaseSurface& base, const IndexBox& box,
+                                        const ReliefLayer* known, const RunContext& ctx) {
+    const ReliefLayer own = known ? ReliefLayer{} : reliefLayer(base, kLayer, ctx);
+    const ReliefLayer& layer = known ? *known : own;
+    Weighted fields = weightedHeights(layer, base.distance, ctx);
     std::vector<Index3> voxels;
     std::vector<float> finer;
     for (std::size_t i = 0; i < layer.point.size(); ++i)
-        if (box.contains(layer.voxels[i]) && !layer.point[i].lost) {
+        if (box.contains(layer.voxels[i]) && isMeant(base.distance, layer, i)) {
             voxels.push_back(layer.voxels[i]);
             finer.push_back(layer.point[i].height);
         }

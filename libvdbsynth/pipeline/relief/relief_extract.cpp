@@ -65,17 +65,31 @@ double radiusOf(const LevelSet& model, const ReliefExtractOptions& options, Reli
     return result.scale.radius;
 }
 
+// A base with void around has good distances already.
+BrickField clampedBand(const BrickField& field, const ReliefExtraction& result, float halfWidth,
+                       const RunContext& ctx) {
+    BrickField clamped = BrickField::generate(field.box(), ctx, [&](const IndexBox& brick, float* samples) {
+        field.readBox(brick.min, brick.size(), samples);
+        for (int i = 0; i < BrickField::kSamples; ++i)
+            samples[i] = std::clamp(samples[i], -halfWidth, halfWidth);
+    });
+    clamped.translate(result.corner);
+    return clamped;
+}
+
 // A field over the domain as a level set.
 LevelSet levelSetOf(const BrickField& field, float band, const ReliefExtraction& result, const LevelSet& like,
-                    const char* name, double halfWidth, const RunContext& ctx) {
+                    const char* name, double halfWidth, bool distances, const RunContext& ctx) {
     CloseOptions close;
     if (result.recorded) close.cut = kAllCut;
     close.halfWidth = float(halfWidth);
     close.band = band;
     close.voxelSize = result.voxelSize;
+    const BrickField closed = distances && !result.recorded
+                                  ? clampedBand(field, result, float(halfWidth), ctx)
+                                  : closedBand(field, result.corner, close, ctx);
     LevelSet made;
-    made.grid = levelSetFrom(closedBand(field, result.corner, close, ctx), float(halfWidth), *like.grid,
-                             std::string("the ") + name, ctx);
+    made.grid = levelSetFrom(closed, float(halfWidth), *like.grid, std::string("the ") + name, ctx);
     made.domain = result.recorded ? like.domain : solidBox(*made.grid, std::string("the ") + name);
     made.domainRecorded = result.recorded;
     stampLevelSet(made);
@@ -136,14 +150,16 @@ ReliefExtraction extracted(const LevelSet& model, const ReliefExtractOptions& op
     result.domain = result.recorded ? scan.domain : scan.field.box();
     result.fields = baseSurface(scan.field, of, ctx);
     result.base = levelSetOf(result.fields.distance, result.fields.reach, result, model, "base",
-                             options.halfWidth, ctx);
-    makeReliefGrids(result, options.halfWidth, ctx);
-    result.statistics = reliefStatistics(result.fields, measuredBox(result, of.radius, ctx), ctx);
+                             options.halfWidth, true, ctx);
+    // Half a voxel more: the level set has distances of its own, and the relief is active where that is.
+    const ReliefLayer layer = reliefLayer(result.fields, float(options.halfWidth) + 0.5f, ctx);
+    makeReliefGrids(result, layer);
+    result.statistics = reliefStatistics(result.fields, measuredBox(result, of.radius, ctx), ctx, &layer);
     compareTopology(result, ctx);
     sayWhatIsLost(result, ctx);
     if (options.strength)
         result.surface = levelSetOf(reliefSurface(result.fields, *options.strength, ctx), 3, result, model,
-                                    kSurfaceName, options.halfWidth, ctx);
+                                    kSurfaceName, options.halfWidth, false, ctx);
     return result;
 }
 

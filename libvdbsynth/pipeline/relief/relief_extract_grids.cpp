@@ -1,6 +1,5 @@
 // A relief as grids.
 #include "libvdbsynth/pipeline/relief/relief_extract_steps.h"
-#include "libvdbsynth/relief/relief_layer.h"
 #include "libvdbsynth/vdb/coord.h"
 
 #include <openvdb/openvdb.h>
@@ -9,9 +8,7 @@
 
 namespace vdbsynth {
 
-void makeReliefGrids(ReliefExtraction& result, double halfWidth, const RunContext& ctx) {
-    // Half a voxel more: the level set has distances of its own, and the relief is active where that is.
-    const ReliefLayer layer = reliefLayer(result.fields, float(halfWidth) + 0.5f, ctx);
+void makeReliefGrids(ReliefExtraction& result, const ReliefLayer& layer) {
     const openvdb::FloatGrid::ConstAccessor base = result.base.grid->getConstAccessor();
     const float voxel = float(result.voxelSize);
     const auto heights = openvdb::FloatGrid::create(0.f);

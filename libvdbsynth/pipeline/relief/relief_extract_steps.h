@@ -1,5 +1,6 @@
 #pragma once
 #include "libvdbsynth/pipeline/relief/relief_extract.h"
+#include "libvdbsynth/relief/relief_layer.h"
 
 namespace vdbsynth {
 
@@ -7,6 +8,6 @@ namespace vdbsynth {
 void compareTopology(ReliefExtraction& result, const RunContext& ctx);
 
 /// The grids of a layer over the base's band.
-void makeReliefGrids(ReliefExtraction& result, double halfWidth, const RunContext& ctx);
+void makeReliefGrids(ReliefExtraction& result, const ReliefLayer& layer);
 
 }  // namespace vdbsynth

@@ -29,6 +29,8 @@ set(VDBSYNTH_PUBLIC_HEADERS
   pipeline/make/make.h
   pipeline/match/match.h
   pipeline/convert/model.h
+  pipeline/relief/relief.h
+  pipeline/relief/relief_extract.h
   pipeline/repeat/repeat.h
   pipeline/synth/synth.h
   pipeline/texture/texture.h
@@ -36,6 +38,9 @@ set(VDBSYNTH_PUBLIC_HEADERS
   pipeline/texture/texture_target.h
   points/surface_sites.h
   procedural/exemplar.h
+  relief/base_scale.h
+  relief/base_surface.h
+  relief/relief_statistics.h
   search/block_index.h
   synth/synthesis_options.h
   synth/target_size.h

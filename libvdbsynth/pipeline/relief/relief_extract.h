@@ -1,6 +1,5 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
-#include "libvdbsynth/io/output_set.h"
 #include "libvdbsynth/relief/base_scale.h"
 #include "libvdbsynth/relief/base_surface.h"
 #include "libvdbsynth/relief/relief_statistics.h"

@@ -1,5 +1,6 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/io/output_set.h"
 #include "libvdbsynth/pipeline/relief/relief_extract.h"
 
 #include <string>

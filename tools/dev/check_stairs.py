@@ -49,7 +49,7 @@ def inexact(root):
 
 
 # A method is one header with its options and result, and what those are made of: of texturing ten, as its samples, targets and
-# coordinates are types of their own; of relief five.
+# coordinates are types of their own; of relief five, as extraction gives its base, radii and statistics as well.
 MOST_PUBLIC = 54
 MOST_HEADERS = 13  # in a folder
 

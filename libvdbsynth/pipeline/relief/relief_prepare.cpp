@@ -106,6 +106,9 @@ void applyMasks(const LevelSet& model, const ReliefOptions& options, PreparedTar
     if (options.maskModel) maskByModel(options, prepared, ctx);
     if (!options.maskAttribute.empty()) maskByAttribute(model, options, prepared);
     if (options.maskImage) maskByImage(model, options, prepared);
+    if (std::all_of(target.strength.begin(), target.strength.end(), [](float share) { return share == 0; }))
+        message(ctx, MessageLevel::Warning,
+                "the mask leaves no part of the target: nothing is changed; `mask` has to meet its surface");
 }
 
 }  // namespace

@@ -2,11 +2,12 @@
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/math/index_box.h"
 #include "libvdbsynth/relief/base_surface.h"
-#include "libvdbsynth/relief/relief_layer.h"
 
 #include <vector>
 
 namespace vdbsynth {
+
+struct ReliefLayer;
 
 /// The part of a relief between two wavelengths.
 struct ReliefOctave {

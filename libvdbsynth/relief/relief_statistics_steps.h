@@ -1,4 +1,5 @@
 #pragma once
+#include "libvdbsynth/relief/relief_layer.h"
 #include "libvdbsynth/relief/relief_statistics.h"
 
 namespace vdbsynth {

@@ -1,5 +1,6 @@
 #pragma once
 #include "libvdbsynth/pipeline/relief/relief.h"
+#include "libvdbsynth/relief/relief_statistics.h"
 
 #include <vector>
 

@@ -188,12 +188,15 @@ void sumIsScan() {
     options.baseRadius = 6;
     options.strength = 1;
     const ReliefExtraction extraction = extractRelief(bumpy(), options);
-    double most = 0;
-    const BrickField again = gatherNarrowBand(*extraction.surface.grid, extraction.surface.domain);
-    const Index3 corner = extraction.surface.domain.min - extraction.corner;
-    for (const Vec3f& p : zeroLevel(again, again.box(), Facing::Outward).points)
-        most = std::max(
-            most, std::abs(double(sampleTrilinear(extraction.fields.scan, p + cast<float>(at(corner))))));
+    double most = 0, squares = 0, count = 0;
+    const IndexBox box = solidBox(*extraction.surface.grid, "the sum");
+    const BrickField again = gatherNarrowBand(*extraction.surface.grid, box);
+    for (const Vec3f& p : zeroLevel(again, again.box(), Facing::Outward).points) {
+        const Vec3f place = p + cast<float>(at(box.min - extraction.corner));
+        const double d = std::abs(double(sampleTrilinear(extraction.fields.scan, place)));
+        most = std::max(most, d), squares += d * d, count += 1;
+    }
+    say("sum_rms", std::sqrt(squares / count));
     say("sum_largest_error", most);
 }
 
@@ -279,11 +282,11 @@ void undercut() {
 
 void printRightAnswers() {
     openvdb::initialize();
+    sumIsScan();
     plainBall();
     sineOnPlane();
     onCylinder();
     onTorus();
-    sumIsScan();
     ownBase();
     undercut();
 }

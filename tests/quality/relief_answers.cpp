@@ -23,6 +23,14 @@
 namespace vdbsynth::quality {
 namespace {
 
+// With the voxels outside that the zero level lies beside.
+IndexBox boxOf(const openvdb::FloatGrid& grid) {
+    IndexBox box = solidBox(grid, "a result");
+    box.min = box.min - Index3{4, 4, 4};
+    box.max = box.max + Index3{4, 4, 4};
+    return box;
+}
+
 using Distance = std::function<double(const Vec3d&)>;
 
 Vec3d at(const Index3& p) {
@@ -99,8 +107,8 @@ struct Ring {
 };
 Ring strongest(const LevelSet& made, const Distance& height, const std::function<bool(const Vec3d&)>& counts,
                double around, const Vec3d& middle) {
-    const BrickField field = gatherNarrowBand(*made.grid, solidBox(*made.grid, "made"));
-    const Index3 corner = solidBox(*made.grid, "made").min;
+    const BrickField field = gatherNarrowBand(*made.grid, boxOf(*made.grid));
+    const Index3 corner = boxOf(*made.grid).min;
     const Mesh mesh = zeroLevel(field, field.box(), Facing::Outward);
     constexpr int kSlots = 1024;
     std::vector<double> sum(kSlots), count(kSlots);
@@ -158,8 +166,8 @@ void onTorus() {
             return std::abs(p.z) < 5 && (outside ? r > 48 : r < 48);
         };
         // Phases slip round a torus, so amplitude is that of the deviation.
-        const BrickField field = gatherNarrowBand(*made.model.grid, solidBox(*made.model.grid, "made"));
-        const Index3 corner = solidBox(*made.model.grid, "made").min;
+        const BrickField field = gatherNarrowBand(*made.model.grid, boxOf(*made.model.grid));
+        const Index3 corner = boxOf(*made.model.grid).min;
         double sum = 0, squares = 0, count = 0;
         for (const Vec3f& v : zeroLevel(field, field.box(), Facing::Outward).points) {
             const Vec3d p = cast<double>(v) + at(corner) - middle;
@@ -189,7 +197,7 @@ void sumIsScan() {
     options.strength = 1;
     const ReliefExtraction extraction = extractRelief(bumpy(), options);
     double most = 0, squares = 0, count = 0;
-    const IndexBox box = solidBox(*extraction.surface.grid, "the sum");
+    const IndexBox box = boxOf(*extraction.surface.grid);
     const BrickField again = gatherNarrowBand(*extraction.surface.grid, box);
     for (const Vec3f& p : zeroLevel(again, again.box(), Facing::Outward).points) {
         const Vec3f place = p + cast<float>(at(box.min - extraction.corner));
@@ -217,7 +225,7 @@ void ownBase() {
     const ReliefResult made = transferRelief({{&scan, {}, 0, 0}}, base, nullptr, options);
     const Heights before = sampleHeights({&scan, {}, 0, 0}, options), after = madeHeights(made.model, base);
     say("own_base_sq_error", std::abs(after.statistics.sq / before.statistics.sq - 1));
-    const IndexBox box = solidBox(*made.model.grid, "made");
+    const IndexBox box = boxOf(*made.model.grid);
     const BrickField field = gatherNarrowBand(*made.model.grid, box);
     double squares = 0, count = 0;
     for (const Vec3f& p : zeroLevel(field, field.box(), Facing::Outward).points) {

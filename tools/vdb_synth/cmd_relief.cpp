@@ -253,7 +253,7 @@ void relief(Run& run) {
     if (arguments.has("mask-image")) {
         run.noteInput(arguments.text("mask-image"));
         options.maskImage =
-            readTextureSamples({{arguments.text("mask-image"), {}}}, Tiling::Yes, run.context).front().image;
+            readTextureSamples({{arguments.text("mask-image"), {}}}, Tiling::No, run.context).front().image;
     }
     if (arguments.has("direction")) options.direction = directionOf(run, "direction");
     if (arguments.has("exemplar-direction"))

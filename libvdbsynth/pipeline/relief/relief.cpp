@@ -34,8 +34,8 @@ void fit(std::vector<ReliefSample>& samples, const LevelSet& target, const Relie
          ReliefResult& result, const RunContext& ctx) {
     if (!options.fit) return;
     const ReliefSample& sample = samples.front();
-    if (sample.surface || !sample.image.tileable)
-        throw Error(ErrorCode::Unusable, "`fit`: needs a tileable picture of heights");
+    if (samples.size() > 1 || sample.surface || !sample.image.tileable)
+        throw Error(ErrorCode::Unusable, "`fit`: needs one tileable picture of heights");
     const PreparedTarget prepared = preparedTarget(target, 3, nullptr, options, ctx);
     const double period = sample.image.width * result.texel / prepared.place.voxelSize;
     result.fitted =
@@ -169,6 +169,9 @@ ReliefResult transferred(const std::vector<ReliefSource>& sources, const LevelSe
         field = grownOnTarget(samples.front(), prepared, options, result, ctx);
     } else {
         map = matchRelief(prepared.target, samples, transfer, ctx);
+        if (options.fit)
+            wrapAround(prepared, cast<double>(options.direction->axis), transfer.texel,
+                       samples.front().image.width, map);
         field = reliefOnTarget(prepared.target, samples, map, transfer, ctx);
     }
     result.model = finished(field, prepared, target, options, ctx);

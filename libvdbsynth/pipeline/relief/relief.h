@@ -53,10 +53,11 @@ struct ReliefOptions {
     std::string maskAttribute;  ///< name of a grid among the target's attributes, painted 0..1 (of a colour
                                 ///< the mean of its channels); empty: none
     std::optional<SampleImage>
-        maskImage;     ///< painted on the target's texture coordinates, its attribute `uv`
-    double fade = 0;   ///< [world] at least 0: depth inside `maskModel` over which the relief rises to full
-    bool fit = false;  ///< resizes tileable pictures by the least that makes a whole number of periods round
-                       ///< the target, about the axis of `direction` (around)
+        maskImage;    ///< painted on the target's texture coordinates, its attribute `uv`
+    double fade = 0;  ///< [world] at least 0: depth inside `maskModel` over which the relief rises to full
+    bool fit =
+        false;  ///< lays a tileable picture round the axis of `direction` (around), resized by the
+                ///< least that makes a whole number of periods, in one phase; ends are matched as without
     float halfWidth = kHalfWidth;  ///< [voxels] of the result, 1.5..100
 };
 

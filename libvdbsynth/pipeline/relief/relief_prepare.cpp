@@ -19,6 +19,8 @@
 namespace vdbsynth {
 namespace {
 
+constexpr float kSideCosine = 0.7f;  // of normal and axis, below which a surface runs along the axis
+
 // 0 to 1 with level ends.
 float smoothStep(float t) {
     t = std::clamp(t, 0.f, 1.f);
@@ -148,27 +150,72 @@ std::vector<Vec3f> directionsAt(const std::vector<Vec3f>& point, const std::vect
     return directions;
 }
 
-double fittingFactor(const ReliefTarget& target, const VoxelPlace& place, const Vec3d& axis, double period) {
-    const Vec3f along = place.fromWorldDirection(axis);
+namespace {
+
+// A target about an axis. [voxels]
+struct Turned {
+    Vec3f along, middle;
+    double radius = 0;  // mean, where the surface runs along the axis; 0: nowhere
+
+    bool isSide(const ReliefTarget& target, std::size_t site) const {
+        return std::abs(dot(target.normal[site], along)) < kSideCosine;
+    }
+    Vec3f across(const Vec3f& point) const {
+        const Vec3f off = point - middle;
+        return off - along * dot(off, along);
+    }
+};
+
+Turned turnedAbout(const ReliefTarget& target, const VoxelPlace& place, const Vec3d& axis) {
+    Turned turned;
+    turned.along = place.fromWorldDirection(axis);
     Vec3f low = target.point[0], high = low;
     for (const Vec3f& p : target.point)
         for (int a = 0; a < 3; ++a) {
             low[a] = std::min(low[a], p[a]);
             high[a] = std::max(high[a], p[a]);
         }
-    const Vec3f middle = (low + high) * 0.5f;
-    // Where the surface runs along the axis, as on a cylinder's side.
-    double sum = 0;
+    turned.middle = (low + high) * 0.5f;
     std::size_t count = 0;
     for (std::size_t i = 0; i < target.point.size(); ++i) {
-        if (std::abs(dot(target.normal[i], along)) > 0.3f) continue;
-        const Vec3f off = target.point[i] - middle;
-        sum += double(length(off - along * dot(off, along)));
+        if (!turned.isSide(target, i)) continue;
+        turned.radius += double(length(turned.across(target.point[i])));
         ++count;
     }
-    if (count == 0) return 1;
-    const double periods = 2 * kPi * sum / double(count) / period;
+    if (count > 0) turned.radius /= double(count);
+    return turned;
+}
+
+}  // namespace
+
+double fittingFactor(const ReliefTarget& target, const VoxelPlace& place, const Vec3d& axis, double period) {
+    const double radius = turnedAbout(target, place, axis).radius;
+    if (radius == 0) return 1;
+    const double periods = 2 * kPi * radius / period;
     return periods / std::max(1.0, std::round(periods));
+}
+
+void wrapAround(const PreparedTarget& prepared, const Vec3d& axis, double texel, double width,
+                ReliefMap& map) {
+    const ReliefTarget& target = prepared.target;
+    const Turned turned = turnedAbout(target, prepared.place, axis);
+    if (turned.radius == 0) return;
+    const double periods = std::max(1.0, std::round(2 * kPi * turned.radius / (width * texel)));
+    // Any two directions across the axis.
+    const Vec3f seed = std::abs(turned.along.x) < 0.9f ? Vec3f{1, 0, 0} : Vec3f{0, 1, 0};
+    const Vec3f x = normalized(seed - turned.along * dot(seed, turned.along)), y = cross(turned.along, x);
+    for (std::size_t i = 0; i < target.point.size(); ++i) {
+        const Vec3f across = turned.across(target.point[i]);
+        const Vec3f round = cross(turned.along, across);
+        if (!turned.isSide(target, i) || !(length(round) > 1e-3f)) continue;
+        const double angle = arcTangent(double(dot(across, y)), double(dot(across, x)));
+        const double height = double(dot(target.point[i] - turned.middle, turned.along));
+        const Vec3f tangent = normalized(round - target.normal[i] * dot(round, target.normal[i]));
+        // v runs along normal x tangent, which is along the axis outside and against it inside a hole.
+        const float up = dot(cross(target.normal[i], tangent), turned.along) < 0 ? -1.f : 1.f;
+        map.coordinate[i] = {float(angle / (2 * kPi) * periods * width), up * float(height / texel)};
+        map.tangent[i] = tangent;
+    }
 }
 
 PreparedTarget preparedTarget(const LevelSet& model, float reach, const ReliefLabels& labels,

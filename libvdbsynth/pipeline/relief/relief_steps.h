@@ -51,6 +51,12 @@ std::vector<Vec3f> directionsAt(const std::vector<Vec3f>& point, const std::vect
 /// The factor that makes a whole number of periods round the target. @param period  [voxels of the target]
 double fittingFactor(const ReliefTarget& target, const VoxelPlace& place, const Vec3d& axis, double period);
 
+/// Lays a picture round the target: u by the angle about the axis, in `periods` whole pictures, v by the
+/// height along it, where the surface runs along the axis; ends keep what was found. So the pattern closes
+/// and has one phase.
+void wrapAround(const PreparedTarget& prepared, const Vec3d& axis, double texel, double width,
+                ReliefMap& map);
+
 /// The paper's growth: the target's mesh, displaced, as a field like reliefOnTarget's.
 BrickField grownOnTarget(const ReliefSample& sample, const PreparedTarget& prepared,
                          const ReliefOptions& options, ReliefResult& result, const RunContext& ctx);

@@ -28,7 +28,7 @@ TEST_CASE("siteTangents: without directions the field is smooth, with few singul
     CHECK(double(turned) < 0.02 * double(sites.neighbours.size()));
 }
 
-TEST_CASE("siteTangents: those given stay, others follow; along normals is an error") {
+TEST_CASE("siteTangents: those given stay, others follow, along normals is an error") {
     const test::PointShape plane = test::latticePlane(20);
     const SurfaceSites sites = sitesOfPoints(plane.point, plane.normal, 8);
     std::vector<Vec3f> given(400, {0, 0, 0});

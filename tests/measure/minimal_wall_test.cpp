@@ -89,7 +89,7 @@ TEST_CASE("minimalWall: a solid that leaves the box has no wall, a slab through 
     CHECK(wallOf(solid({8, 8, 8}, [](const Vec3d& p) { return length(p - Vec3d{4, 4, 4}) - 0.4; })) < 1);
 }
 
-TEST_CASE("minimalWall: same bits for any number of threads; cancel", "[measure][determinism]") {
+TEST_CASE("minimalWall: same bits for any number of threads, cancel", "[measure][determinism]") {
     const BrickField balls = test::ballsField({60, 60, 60}, 3, 3, 12);
     RunContext one;
     one.threads = 1;

@@ -120,14 +120,23 @@ Ring strongest(const LevelSet& made, const Distance& height, const std::function
         sum[std::size_t(slot)] += height(p);
         count[std::size_t(slot)] += 1;
     }
+    // Between vertices heights are interpolated: steep flanks have more vertices than crests.
+    std::vector<double> mean(kSlots);
+    for (int i = 0; i < kSlots; ++i) {
+        int low = 0, high = 0;
+        while (low < kSlots && count[std::size_t((i - low + kSlots) % kSlots)] == 0) ++low;
+        while (high < kSlots && count[std::size_t((i + high) % kSlots)] == 0) ++high;
+        if (low == kSlots) return {};
+        const std::size_t a = std::size_t((i - low + kSlots) % kSlots), b = std::size_t((i + high) % kSlots);
+        const double share = low + high > 0 ? double(low) / (low + high) : 0;
+        mean[std::size_t(i)] = sum[a] / count[a] * (1 - share) + sum[b] / count[b] * share;
+    }
     Ring ring;
     for (int k = 2; k < 80; ++k) {
         double c = 0, s = 0, n = 0;
         for (int i = 0; i < kSlots; ++i) {
-            if (count[std::size_t(i)] == 0) continue;
-            const double mean = sum[std::size_t(i)] / count[std::size_t(i)],
-                         t = 2 * kPi * k * (i + 0.5) / kSlots;
-            c += mean * cosine(t), s += mean * sine(t), n += 1;
+            const double t = 2 * kPi * k * (i + 0.5) / kSlots;
+            c += mean[std::size_t(i)] * cosine(t), s += mean[std::size_t(i)] * sine(t), n += 1;
         }
         const double amplitude = 2 * std::sqrt(c * c + s * s) / n;
         if (amplitude > ring.amplitude) ring = {amplitude, around / k};

@@ -50,7 +50,7 @@ TEST_CASE("parseArguments: what is refused", "[tools][error]") {
               parseArguments("make", {"--labels", "1"});
           }) ==
           "--labels: is no option of make; convert, crop, mask, match, synth, analogy, texture, repeat, "
-          "compare, render and relief-extract take it");
+          "compare, render, relief and relief-extract take it");
     CHECK(refusalOf([] { parseArguments("synth", {"--which=a.vdb"}); }) == "--which: is now --exemplar-map");
     CHECK(test::contains(refusalOf([] {
                              parseArguments("synth", {"--sise", "1"});
@@ -162,8 +162,9 @@ TEST_CASE("mergeConfig: what is refused names the file", "[tools][error]") {
     CHECK(test::contains(refusal(R"({"blok": 3})").message,
                          "c.json: blok: unknown option of synth; did you mean block?"));
     CHECK(test::contains(refusal(R"({"which": "a.vdb"})").message, "c.json: which: is now exemplar-map"));
-    CHECK(test::contains(refusal(R"({"strength": 1})").message,
-                         "c.json: strength: is no option of synth; analogy and relief-extract take it"));
+    CHECK(test::contains(
+        refusal(R"({"strength": 1})").message,
+        "c.json: strength: is no option of synth; analogy, relief and relief-extract take it"));
     CHECK(test::contains(refusal(R"({"config": "d.json"})").message, "belongs on the command line"));
     CHECK(test::contains(refusal(R"({"block": [1, 2]})").message, "\"block\" has several values"));
     CHECK(test::contains(refusal(R"({"draft": "maybe"})").message, "must be true or false"));

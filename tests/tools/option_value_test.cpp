@@ -2,6 +2,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <string>
+
 #include "tests/support/comma_locale.h"
 #include "tests/support/makers.h"
 #include "tools/vdb_synth/options.h"
@@ -76,9 +79,14 @@ TEST_CASE("normalValue: of a path that is read only the file's name is left", "[
         CHECK(test::contains(refusal("texture", "channel", bad), "NAME=FILE"));
     for (const Option& option : allOptions()) {
         if (!readsPath(option) || option.kind == Kind::NamedImage) continue;
-        for (const char* path : {"/secret/place/a.vdb", "../secret/a.vdb"}) {
+        // Of a kind that the option takes.
+        const bool vdb = option.extensions.empty() ||
+                         std::count(option.extensions.begin(), option.extensions.end(), "vdb") > 0;
+        const std::string name = "a." + (vdb ? std::string("vdb") : option.extensions.front());
+        for (const char* folder : {"/secret/place/", "../secret/"}) {
+            const std::string path = std::string(folder) + name;
             INFO(option.name);
-            CHECK(normalValue(option, path) == "a.vdb");
+            CHECK(normalValue(option, path) == name);
             CHECK(pathIn(option, path) == path);
         }
     }

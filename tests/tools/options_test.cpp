@@ -150,7 +150,7 @@ TEST_CASE("unknownOption: an old name has a hint at the present one", "[tools][e
 TEST_CASE("unknownOption: of another command's option it says who takes it", "[tools][error]") {
     CHECK(unknownOption("make", "block") == "--block: is no option of make; match and synth take it");
     CHECK(unknownOption("synth", "strength") ==
-          "--strength: is no option of synth; analogy and relief-extract take it");
+          "--strength: is no option of synth; analogy, relief and relief-extract take it");
 }
 
 TEST_CASE("unknownOption: the nearest name is one of this command", "[tools][error]") {

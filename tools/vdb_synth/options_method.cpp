@@ -289,7 +289,7 @@ std::vector<Option> matchTable() {
             .noting("with --process")
             .takenBy({"compare"}),
         worldLength("relief-radius", "R")
-            .says("also compare relief: heights over a base of this radius, as relief-extract --base-radius")
+            .says("also compare relief: heights over a base of this radius, as relief-extract makes it")
             .takenBy({"compare"}),
         file("map", "FILE.vdb", {"vdb"})
             .says("source map of OTHER")

@@ -41,6 +41,10 @@ void fit(std::vector<ReliefSample>& samples, const LevelSet& target, const Relie
     result.fitted =
         fittingFactor(prepared.target, prepared.place, cast<double>(options.direction->axis), period);
     result.texel *= result.fitted;
+    // Heights stay, in the new texels.
+    for (float& h : samples.front().image.values) h /= float(result.fitted);
+    samples.front().lowest /= float(result.fitted);
+    samples.front().highest /= float(result.fitted);
     message(
         ctx, MessageLevel::Note,
         "the picture is resized by " + roundedText(result.fitted, 4) + ", so that whole periods go round");

@@ -74,7 +74,7 @@ TEST_CASE("3MF: each solid is an object, with its cavities, and a solid in a cav
     CHECK(summarize(back).closedManifold());
 }
 
-TEST_CASE("3MF: floats, colours and opacity come back; places far from zero too", "[io][property]") {
+TEST_CASE("3MF: floats, colours and opacity come back, places far from zero too", "[io][property]") {
     Mesh mesh = test::sphereMesh(1.7, 4);
     Attribute colour{"Cd", 3, {}}, alpha{"Alpha", 1, {}}, heat{"heat", 1, {}};
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {

@@ -149,7 +149,8 @@ void packCharts(const std::vector<ReliefChart>& charts, const std::vector<Triang
                 const SurfaceSites& sites, std::size_t largest, ReliefSample& sample, const RunContext& ctx) {
     std::vector<Packed> packed;
     for (const ReliefChart& chart : charts) packed.push_back(boxOf(chart));
-    const auto [width, height] = packRows(packed);
+    const std::pair<int, int> sides = packRows(packed);
+    const int width = sides.first, height = sides.second;
     if (std::size_t(width) * std::size_t(height) > largest)
         throw Error(ErrorCode::Memory, "the flattened sample would have " + std::to_string(width) + " x " +
                                            std::to_string(height) + " texels; use larger voxels for it");

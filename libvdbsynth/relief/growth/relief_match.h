@@ -68,7 +68,7 @@ private:
 struct ReliefMismatch {
     double mean = 0;  ///< [world^2] mean over sites of SSD / sum of w_v, over whole neighbourhoods
     /// Share of places beyond the field's box, which are left out: at the border of an open sample a
-    /// neighbourhood goes on where the sample does not.
+    /// neighbourhood continues where the sample does not.
     double outside = 0;
     double capped = 0;  ///< share of the others whose distance is the band's half-width (relief_distance.h)
     std::size_t sites = 0;  ///< that have neighbours inside and so were counted

@@ -61,7 +61,7 @@ float reliefReach(const std::vector<ReliefSample>& samples, const ReliefTransfer
 /// where phi_j is the distance to the sample's relief (reliefDistance) over the place u_j that site j's
 /// chart, extended to the foot by the position formula, gives there; j are the nearest sites within three
 /// voxels, so that inside a piece of the sample all agree and across its border one fades into the next. s is
-/// the strength times the site's. Overhangs and loose parts come along with distances. Carving leaves a wall:
+/// the strength times the site's. Distances keep overhangs and loose parts. Carving leaves a wall:
 /// phi is at most d + (thickness - minWall) / 2 (min with the target moved inward), the thickness being
 /// measured along the inward normal.
 /// @return a field over the target's box whose zero level is meant, clamped to -3..3; the target's own values

@@ -2,6 +2,7 @@
 #include "tools/vdb_synth/direction_option.h"
 #include "tools/vdb_synth/option_value.h"
 #include "tools/vdb_synth/relief_base_option.h"
+#include "tools/vdb_synth/texture_files.h"
 #include "tools/vdb_synth/texture_region_option.h"
 
 #include "libvdbsynth/base/error.h"
@@ -44,17 +45,7 @@ ReliefOptions parseOptions(const Arguments& arguments) {
     options.fade = arguments.real("fade");
     options.fit = arguments.has("fit");
     options.halfWidth = float(arguments.real("half-width"));
-    options.synthesis.levels = arguments.whole("levels");
-    options.synthesis.passes = arguments.has("draft") ? 0 : arguments.whole("passes");
-    options.synthesis.coherence = arguments.real("coherence");
-    options.synthesis.uniformity = arguments.real("uniformity");
-    options.synthesis.histogram = arguments.real("histogram");
-    options.synthesis.maxRotation = arguments.real("max-rotation");
-    if (arguments.has("draft") && arguments.has("passes"))
-        throw Error(ErrorCode::InvalidOption, "--draft and --passes: give one of them");
-    if (arguments.has("max-rotation") && arguments.has("direction"))
-        throw Error(ErrorCode::InvalidOption,
-                    "--max-rotation: has no effect with --direction, which pieces follow within 8 degrees");
+    options.synthesis = coordinateOptionsOf(arguments);
     const bool paper = options.method == ReliefMethod::Paper;
     for (const char* name : {"neighbourhood", "top"})
         if (arguments.has(name) && !paper)
@@ -94,8 +85,8 @@ void checkSamples(const Arguments& arguments) {
         throw Error(ErrorCode::InvalidOption, "--region: needs several samples");
 }
 
-// The mean of a picture's channels, as heights.
-SampleImage heightsOf(const TextureSample& sample) {
+// The mean of a picture's channels, 0 to 1; real numbers are heights as they are unless --height is given.
+void takeHeights(const Run& run, const std::string& path, const TextureSample& sample, ReliefSource& source) {
     SampleImage heights{sample.image.width, sample.image.height, 1, sample.image.tileable, {},
                         sample.image.valid};
     const std::size_t channels = std::size_t(sample.image.channels);
@@ -104,7 +95,19 @@ SampleImage heightsOf(const TextureSample& sample) {
         for (std::size_t c = 0; c < channels; ++c) sum += sample.image.values[i * channels + c];
         heights.values.push_back(sum / float(channels));
     }
-    return heights;
+    source.height = run.arguments.real("height");
+    if (sample.maps.front().white == 0) {
+        const auto [low, high] = std::minmax_element(heights.values.begin(), heights.values.end());
+        const float from = *low, range = *high - *low;
+        if (!(source.height > 0) && range > 0) {
+            source.height = double(range);
+            message(run.context, MessageLevel::Note,
+                    path + ": its values are real numbers and taken as heights, over a range of " +
+                        roundedText(source.height, 4) + " (world); --height gives another range");
+        }
+        for (float& v : heights.values) v = range > 0 ? (v - from) / range : 0;
+    }
+    source.heights = std::move(heights);
 }
 
 struct Samples {
@@ -115,8 +118,6 @@ struct Samples {
 Samples loadSamples(Run& run) {
     const Arguments& arguments = run.arguments;
     const std::size_t count = arguments.inputs.size() - 1;
-    const std::string tile = arguments.text("tile");
-    const Tiling tiling = tile == "yes" ? Tiling::Yes : tile == "no" ? Tiling::No : Tiling::Auto;
     ModelOptions model = run.modelOptions();
     model.voxelSize = 0;
     model.resolution = arguments.whole("exemplar-resolution");
@@ -127,9 +128,9 @@ Samples loadSamples(Run& run) {
         const std::string& path = arguments.inputs[i];
         ReliefSource source;
         if (isPicture(path)) {
+            takeHeights(run, path, readTextureSamples({{path, {}}}, tilingOf(arguments), run.context).front(),
+                        source);
             run.noteInput(path);
-            source.heights = heightsOf(readTextureSamples({{path, {}}}, tiling, run.context).front());
-            source.height = arguments.real("height");
             const std::vector<double> sides = arguments.lengths("pixel-size");
             if (sides.size() > 1 && sides[0] != sides[1])
                 throw Error(ErrorCode::InvalidOption,
@@ -251,9 +252,9 @@ void relief(Run& run) {
     if (mask.isModel) options.maskModel = &mask.model;
     options.maskAttribute = arguments.text("mask-attribute");
     if (arguments.has("mask-image")) {
-        run.noteInput(arguments.text("mask-image"));
         options.maskImage =
             readTextureSamples({{arguments.text("mask-image"), {}}}, Tiling::No, run.context).front().image;
+        run.noteInput(arguments.text("mask-image"));
     }
     if (arguments.has("direction")) options.direction = directionOf(run, "direction");
     if (arguments.has("exemplar-direction"))

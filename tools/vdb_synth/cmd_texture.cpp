@@ -42,8 +42,6 @@ void refuseOtherMethods(const Arguments& arguments) {
             std::find(of.methods.begin(), of.methods.end(), method) == of.methods.end())
             throw Error(ErrorCode::InvalidOption,
                         std::string("--") + of.option + ": has no effect with --method " + method);
-    if (arguments.has("draft") && arguments.has("passes"))
-        throw Error(ErrorCode::InvalidOption, "--draft and --passes: give one of them");
     if (arguments.has("displace") != arguments.has("amplitude"))
         throw Error(ErrorCode::InvalidOption,
                     "--displace and --amplitude: give both, the map and the height of its white (world)");
@@ -66,14 +64,7 @@ TextureOptions parseOptions(const Arguments& arguments) {
     options.neighbours = arguments.whole("neighbours");
     options.coherent = arguments.has("coherent");
     options.matchSample = arguments.whole("match-sample");
-    options.synthesis.passes = arguments.has("draft") ? 0 : arguments.whole("passes");
-    options.synthesis.coherence = arguments.real("coherence");
-    options.synthesis.uniformity = arguments.real("uniformity");
-    options.synthesis.histogram = arguments.real("histogram");
-    options.synthesis.maxRotation = arguments.real("max-rotation");
-    if (arguments.has("max-rotation") && arguments.has("direction"))
-        throw Error(ErrorCode::InvalidOption,
-                    "--max-rotation: has no effect with --direction, which pieces follow within 8 degrees");
+    options.synthesis = coordinateOptionsOf(arguments);
     const std::string blend = arguments.text("blend");
     options.blend = blend == "off" || (arguments.has("draft") && !arguments.has("blend")) ? SampleBlend::Off
                     : blend == "weight"    ? SampleBlend::Weight
@@ -98,11 +89,6 @@ std::optional<TargetKind> kindOf(const Arguments& arguments) {
     if (as == "mesh") return TargetKind::Mesh;
     if (as == "levelset") return TargetKind::LevelSet;
     return std::nullopt;
-}
-
-Tiling tilingOf(const Arguments& arguments) {
-    const std::string tile = arguments.text("tile");
-    return tile == "yes" ? Tiling::Yes : tile == "no" ? Tiling::No : Tiling::Auto;
 }
 
 // Voxels are only those of a level set, or of OpenVDB points.

@@ -58,6 +58,27 @@ std::vector<TextureSample> loadSamples(Run& run, const std::vector<SampleFiles>&
     return samples;
 }
 
+Tiling tilingOf(const Arguments& arguments) {
+    const std::string tile = arguments.text("tile");
+    return tile == "yes" ? Tiling::Yes : tile == "no" ? Tiling::No : Tiling::Auto;
+}
+
+CoordinateOptions coordinateOptionsOf(const Arguments& arguments) {
+    if (arguments.has("draft") && arguments.has("passes"))
+        throw Error(ErrorCode::InvalidOption, "--draft and --passes: give one of them");
+    if (arguments.has("max-rotation") && arguments.has("direction"))
+        throw Error(ErrorCode::InvalidOption,
+                    "--max-rotation: has no effect with --direction, which pieces follow within 8 degrees");
+    CoordinateOptions options;
+    options.levels = arguments.whole("levels");
+    options.passes = arguments.has("draft") ? 0 : arguments.whole("passes");
+    options.coherence = arguments.real("coherence");
+    options.uniformity = arguments.real("uniformity");
+    options.histogram = arguments.real("histogram");
+    options.maxRotation = arguments.real("max-rotation");
+    return options;
+}
+
 TextureOutputOptions textureOutputsOf(const Run& run) {
     TextureOutputOptions options;
     options.model = run.modelOptions();

@@ -6,6 +6,8 @@
 #include "libvdbsynth/coordinates/site_chart.h"
 #include "libvdbsynth/distance/close_band.h"
 #include "libvdbsynth/geometry/point_neighbours.h"
+#include "libvdbsynth/grid/components.h"
+#include "libvdbsynth/grid/occupancy.h"
 #include "libvdbsynth/pipeline/relief/relief_steps.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/convert/band_grids.h"
@@ -136,6 +138,24 @@ LevelSet finished(const BrickField& field, const PreparedTarget& prepared, const
     return made;
 }
 
+// Pieces that carving cuts off, and loose ones that a sample brings along.
+void sayPieces(const BrickField& field, const PreparedTarget& prepared, const ReliefOptions& options,
+               ReliefResult& result, const RunContext& ctx) {
+    const auto parts = [&](const BrickField& of) {
+        return findComponents(Occupancy::fromField(of, ctx), Neighbours::All).sizes.size();
+    };
+    const std::size_t before = parts(prepared.target.distance);
+    result.parts = parts(field);
+    if (result.parts == before) return;
+    const std::string change = "the target's " + std::to_string(before) + (before == 1 ? " part" : " parts") +
+                               " became " + std::to_string(result.parts);
+    const bool keeps = options.method == ReliefMethod::Default && options.minWall == 0;
+    message(ctx, MessageLevel::Warning,
+            change + " with relief" +
+                (keeps ? "; `minWall` keeps thin parts whole, a smaller `strength` helps too"
+                       : "; a smaller `strength` changes less"));
+}
+
 bool masked(const ReliefTarget& target) {
     return std::any_of(target.strength.begin(), target.strength.end(), [](float s) { return s < 1; });
 }
@@ -165,7 +185,7 @@ ReliefResult transferred(const std::vector<ReliefSource>& sources, const LevelSe
         throw Error(ErrorCode::Unusable, "the relief would reach " + roundedText(double(reach), 3) +
                                              " voxels from the target, over " +
                                              roundedText(double(kMostReach), 3) +
-                                             "; use a smaller `scale` or `strength`");
+                                             "; use a smaller `height`, `scale` or `strength`");
     const PreparedTarget prepared = preparedTarget(target, reach, labels, options, ctx);
     ReliefMap map;
     BrickField field;
@@ -178,6 +198,7 @@ ReliefResult transferred(const std::vector<ReliefSource>& sources, const LevelSe
                        samples.front().image.width, map);
         field = reliefOnTarget(prepared.target, samples, map, transfer, ctx);
     }
+    sayPieces(field, prepared, options, result, ctx);
     result.model = finished(field, prepared, target, options, ctx);
     if ((masked(prepared.target) || options.strength == 0) && options.method == ReliefMethod::Default &&
         std::abs(halfWidthOf(*target.grid) - double(options.halfWidth)) < 1e-6)

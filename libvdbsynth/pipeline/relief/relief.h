@@ -74,6 +74,7 @@ struct ReliefResult {
     double texel = 1;             ///< [world of the target] that a sample's texel is wide
     double baseRadius = 0;        ///< [world] of the first scan's base; 0 for pictures
     std::vector<double> covered;  ///< of each scan, share of its surface that was flattened
+    std::size_t parts = 0;        ///< of the result; a warning says where the target has another number
     bool folds = false;           ///< distances were copied, not heights
     double unchanged = 0;         ///< share of the target's band that keeps its bits
     double fitted = 1;            ///< by which `fit` resized the picture

@@ -183,6 +183,26 @@ TEST_CASE("transferRelief: a mask keeps the target's bits outside, --fade rises 
     CHECK(inside > 500);
 }
 
+TEST_CASE("transferRelief: parts that carving cuts off are said, a least wall keeps them", "[pipeline]") {
+    // A rod of radius 3 that waves four voxels deep cut through.
+    const LevelSet rod = cylinder(3, 60);
+    ReliefOptions options = around("axis:z");
+    const auto parts = [&](double minWall, std::string& said) {
+        options.minWall = minWall;
+        RunContext ctx;
+        ctx.onMessage = [&](MessageLevel level, const std::string& text) {
+            if (level == MessageLevel::Warning) said += text;
+        };
+        return transferRelief({wavePicture(64, 16, 12)}, rod, nullptr, options, ctx).parts;
+    };
+    std::string cut, kept;
+    CHECK(parts(0, cut) > 1);
+    CHECK(cut.find("1 part became") != std::string::npos);
+    CHECK(cut.find("`minWall`") != std::string::npos);
+    CHECK(parts(4, kept) == 1);
+    CHECK(kept.empty());
+}
+
 TEST_CASE("transferRelief: several samples by place, sources are written", "[pipeline]") {
     const LevelSet target = ball(25);
     const ReliefLabels halves = [](const TextureShape& sites) {

@@ -84,25 +84,26 @@ std::vector<Primitive> gridPrimitives(const ExemplarRequest& request) {
     return primitives;
 }
 
-// Flat rings on a square lattice, upright rings that link each to its neighbours ("Japanese" mail). The
-// ratios keep every two rings apart, jitter included.
+// Flat rings on a square lattice, upright rings that link each to its neighbours ("Japanese" mail). Between
+// any two rings are at least 0.085 features, jitter included: two voxels of the default feature, so that
+// none fuse.
 std::vector<Primitive> chainmailPrimitives(const ExemplarRequest& request) {
     const double f = request.feature;
     const Vec3d phase = phaseOf(request);
     const double middle = 0.5 * (request.domain.min.z + request.domain.max.z);
-    const double tube = 0.062 * f;
+    const double tube = 0.05 * f;
     std::vector<Primitive> primitives;
     const auto add = [&](Random& random, Vec3d centre, Vec3d axis, double ring) {
-        axis = axis + jitter(random, 0.05);
-        primitives.push_back(torus(centre + jitter(random, 0.012 * f), axis, ring * f, tube));
+        axis = axis + jitter(random, 0.03);
+        primitives.push_back(torus(centre + jitter(random, 0.006 * f), axis, ring * f, tube));
     };
     for (int i = firstSite(request.box.min.x, f) - 1; i <= lastSite(request.box.max.x, f); ++i)
         for (int j = firstSite(request.box.min.y, f) - 1; j <= lastSite(request.box.max.y, f); ++j) {
             Random random(request.seed, siteKey(i, j), kRing);
             const Vec3d centre{i * f + phase.x, j * f + phase.y, middle};
-            add(random, centre, {0, 0, 1}, 0.37);
-            add(random, centre + Vec3d{0.5 * f, 0, 0}, {0, 1, 0}, 0.28);
-            add(random, centre + Vec3d{0, 0.5 * f, 0}, {1, 0, 0}, 0.28);
+            add(random, centre, {0, 0, 1}, 0.40);
+            add(random, centre + Vec3d{0.5 * f, 0, 0}, {0, 1, 0}, 0.31);
+            add(random, centre + Vec3d{0, 0.5 * f, 0}, {1, 0, 0}, 0.31);
         }
     return primitives;
 }

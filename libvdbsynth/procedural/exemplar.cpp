@@ -39,6 +39,8 @@ const std::vector<ExemplarKind>& exemplarKinds() {
         {"terrain", "hills with finer and finer detail", 32, 1.25},
         {"three-tori", "three linked rings, a single object", 16, 0},
         {"weave", "yarns over and under each other", 16, 1.25},
+        {"flowers", "loose flowers over a plane", 24, 0.9},
+        {"bumps", "round bumps on a plane", 16, 1},
     };
     return kinds;
 }
@@ -85,15 +87,19 @@ ExemplarField makeExemplar(const ExemplarOptions& options, const RunContext& ctx
         fromPrimitives(fibresPrimitives(request));
     else if (kind.name == "weave")
         fromPrimitives(weavePrimitives(request));
+    else if (kind.name == "flowers")
+        fromPrimitives(flowersPrimitives(request));
     else if (kind.name == "three-tori")
         fromPrimitives(threeToriPrimitives(request));
+    else if (kind.name == "bumps")
+        result.field = bumpsField(request, ctx);
     else if (kind.name == "foam")
         result.field = foamField(request, ctx);
     else if (kind.name == "sponge")
         result.field = spongeField(request, ctx);
     else
         result.field = terrainField(request, ctx);
-    result.exact = kind.name != "sponge" && kind.name != "terrain";
+    result.exact = kind.name != "sponge" && kind.name != "terrain" && kind.name != "bumps";
     stage.advance();
     return result;
 }

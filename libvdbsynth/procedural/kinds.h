@@ -18,9 +18,11 @@ struct ExemplarRequest {
 std::vector<Primitive> ballsPrimitives(const ExemplarRequest& request, const RunContext& ctx);
 std::vector<Primitive> gridPrimitives(const ExemplarRequest& request);
 std::vector<Primitive> chainmailPrimitives(const ExemplarRequest& request);
+std::vector<Primitive> flowersPrimitives(const ExemplarRequest& request);
 std::vector<Primitive> fibresPrimitives(const ExemplarRequest& request);
 std::vector<Primitive> threeToriPrimitives(const ExemplarRequest& request);
 std::vector<Primitive> weavePrimitives(const ExemplarRequest& request);
+BrickField bumpsField(const ExemplarRequest& request, const RunContext& ctx);
 BrickField foamField(const ExemplarRequest& request, const RunContext& ctx);
 BrickField spongeField(const ExemplarRequest& request, const RunContext& ctx);
 BrickField terrainField(const ExemplarRequest& request, const RunContext& ctx);

@@ -7,11 +7,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace vdbsynth {
 namespace {
 
-constexpr std::uint32_t kWavePurpose = 0x77617665;
+constexpr std::uint32_t kWavePurpose = 0x77617665, kBumpPurpose = 0x62756d70;
 constexpr int kSide = BrickField::kSide;
 
 struct Wave {
@@ -35,6 +36,34 @@ double sumOf(const std::vector<Wave>& waves, const Vec3d& p) {
     double sum = 0;
     for (const Wave& wave : waves) sum += wave.amplitude * cosine(dot(wave.vector, p) + wave.phase);
     return sum;
+}
+
+// The solid below a height [voxels] of every column. Values are heights above the surface, no distances.
+BrickField heightsField(const ExemplarRequest& request, const RunContext& ctx,
+                        const std::function<double(double, double)>& heightAt) {
+    const int nx = request.box.size().x, ny = request.box.size().y;
+    const int wide = (nx + kSide - 1) / kSide * kSide, deep = (ny + kSide - 1) / kSide * kSide;
+    // One height per column; bricks of one column share them.
+    std::vector<double> heights(std::size_t(wide) * std::size_t(deep));
+    for (int x = 0; x < wide; ++x)
+        for (int y = 0; y < deep; ++y)
+            heights[std::size_t(x) * std::size_t(deep) + std::size_t(y)] =
+                heightAt(double(request.box.min.x + x), double(request.box.min.y + y));
+    return BrickField::generate(request.box, ctx, [&](const IndexBox& brick, float* samples) {
+        for (int x = 0; x < kSide; ++x)
+            for (int y = 0; y < kSide; ++y) {
+                const double top =
+                    heights[std::size_t(brick.min.x - request.box.min.x + x) * std::size_t(deep) +
+                            std::size_t(brick.min.y - request.box.min.y + y)];
+                for (int z = 0; z < kSide; ++z)
+                    *samples++ = float(
+                        std::clamp(brick.min.z + z - top, -double(kExemplarLimit), double(kExemplarLimit)));
+            }
+    });
+}
+
+std::uint64_t bumpKey(int i, int j) {
+    return std::uint64_t(std::uint32_t(i)) << 32 | std::uint32_t(j);
 }
 
 }  // namespace
@@ -107,24 +136,30 @@ BrickField terrainField(const ExemplarRequest& request, const RunContext& ctx) {
             waves.push_back({direction * k, 2 * kPi * random.uniform(), height * std::sqrt(2.0 / kWaves)});
         }
     const double level = request.domain.min.z + 0.5 * request.domain.size().z;
-    const int nx = request.box.size().x, ny = request.box.size().y;
-    const int wide = (nx + kSide - 1) / kSide * kSide, deep = (ny + kSide - 1) / kSide * kSide;
-    // One height per column; bricks of one column share them.
-    std::vector<double> heights(std::size_t(wide) * std::size_t(deep));
-    for (int x = 0; x < wide; ++x)
-        for (int y = 0; y < deep; ++y)
-            heights[std::size_t(x) * std::size_t(deep) + std::size_t(y)] =
-                level + sumOf(waves, {double(request.box.min.x + x), double(request.box.min.y + y), 0});
-    return BrickField::generate(request.box, ctx, [&](const IndexBox& brick, float* samples) {
-        for (int x = 0; x < kSide; ++x)
-            for (int y = 0; y < kSide; ++y) {
-                const double top =
-                    heights[std::size_t(brick.min.x - request.box.min.x + x) * std::size_t(deep) +
-                            std::size_t(brick.min.y - request.box.min.y + y)];
-                for (int z = 0; z < kSide; ++z)
-                    *samples++ = float(
-                        std::clamp(brick.min.z + z - top, -double(kExemplarLimit), double(kExemplarLimit)));
+    return heightsField(request, ctx, [&](double x, double y) { return level + sumOf(waves, {x, y, 0}); });
+}
+
+// Round bumps in staggered rows, (1 - r^2 / R^2)^2 high, which add up where they overlap.
+BrickField bumpsField(const ExemplarRequest& request, const RunContext& ctx) {
+    const double f = request.feature, row = 0.87 * f;
+    const double level = request.domain.min.z + 0.35 * request.domain.size().z;
+    Random phases(request.seed, 0, kBumpPurpose);
+    const double phaseX = f * phases.uniform(), phaseY = f * phases.uniform();
+    const auto siteOf = [](double place, double step) { return int(std::floor(place / step)); };
+    return heightsField(request, ctx, [&](double x, double y) {
+        double height = 0;
+        const int row0 = siteOf(y - phaseY, row), column0 = siteOf(x - phaseX, f);
+        // No bump reaches farther than 0.63 features from its site.
+        for (int j = row0 - 1; j <= row0 + 2; ++j)
+            for (int i = column0 - 2; i <= column0 + 2; ++i) {
+                Random random(request.seed, bumpKey(i, j), kBumpPurpose + 1);
+                const double atX = phaseX + (i + (j & 1) * 0.5) * f + random.uniform(-0.08, 0.08) * f;
+                const double atY = phaseY + j * row + random.uniform(-0.08, 0.08) * f;
+                const double reach = f * random.uniform(0.42, 0.55), top = f * random.uniform(0.18, 0.3);
+                const double rest = 1 - ((x - atX) * (x - atX) + (y - atY) * (y - atY)) / (reach * reach);
+                if (rest > 0) height += top * rest * rest;
             }
+        return level + height;
     });
 }
 

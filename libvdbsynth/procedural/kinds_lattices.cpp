@@ -11,7 +11,7 @@
 namespace vdbsynth {
 namespace {
 
-enum Purpose : std::uint32_t { kNode = 1, kRing = 2, kFibre = 3, kYarn = 4, kPhase = 5 };
+enum Purpose : std::uint32_t { kNode = 1, kRing = 2, kFibre = 3, kYarn = 4, kPhase = 5, kFlower = 6 };
 
 std::uint64_t siteKey(int i, int j, int k = 0) {
     return std::uint64_t(std::uint32_t(i + 100000) & 0x1FFFFF) << 42 |
@@ -104,6 +104,48 @@ std::vector<Primitive> chainmailPrimitives(const ExemplarRequest& request) {
             add(random, centre, {0, 0, 1}, 0.40);
             add(random, centre + Vec3d{0.5 * f, 0, 0}, {0, 1, 0}, 0.31);
             add(random, centre + Vec3d{0, 0.5 * f, 0}, {1, 0, 0}, 0.31);
+        }
+    return primitives;
+}
+
+namespace {
+
+// Five petals that rise towards their tips, round a button on a short stem; `axis` points up, `s` is the
+// flower's size. Nothing reaches farther than 0.38 s from the axis.
+void addFlower(const Vec3d& centre, const Vec3d& axis, double s, Random& random,
+               std::vector<Primitive>& primitives) {
+    constexpr int kPetals = 5;
+    const Vec3d u = normalized(cross(axis, {0, 1, 0})), v = cross(axis, u);
+    const double turn = random.uniform();
+    primitives.push_back(ball(centre + axis * (0.03 * s), 0.12 * s));
+    primitives.push_back(capsule(centre, centre - axis * (0.24 * s), 0.065 * s));
+    for (int petal = 0; petal < kPetals; ++petal) {
+        const double angle = 2 * kPi * (petal + turn + random.uniform(-0.06, 0.06)) / kPetals;
+        const auto outwards = [&](double by) { return u * cosine(angle + by) + v * sine(angle + by); };
+        const double rise = random.uniform(0.10, 0.15);
+        const Vec3d bend = centre + (outwards(0) * 0.18 + axis * 0.03) * s;
+        primitives.push_back(capsule(centre, bend, 0.075 * s));
+        // A petal widens: it has two tips.
+        for (const double side : {-0.2, 0.2})
+            primitives.push_back(capsule(bend, centre + (outwards(side) * 0.31 + axis * rise) * s, 0.07 * s));
+    }
+}
+
+}  // namespace
+
+// Loose flowers in staggered rows; none touches another.
+std::vector<Primitive> flowersPrimitives(const ExemplarRequest& request) {
+    const double f = request.feature, row = 0.87 * f;
+    const Vec3d phase = phaseOf(request);
+    const double middle = 0.5 * (request.domain.min.z + request.domain.max.z);
+    std::vector<Primitive> primitives;
+    for (int j = firstSite(request.box.min.y, row) - 1; j <= lastSite(request.box.max.y, row); ++j)
+        for (int i = firstSite(request.box.min.x, f) - 1; i <= lastSite(request.box.max.x, f); ++i) {
+            Random random(request.seed, siteKey(i, j), kFlower);
+            const Vec3d centre{(i + (j & 1) * 0.5) * f + phase.x, j * row + phase.y, middle};
+            const Vec3d axis = normalized(Vec3d{0, 0, 1} + jitter(random, 0.25));
+            addFlower(centre + jitter(random, 0.05 * f), axis, f * random.uniform(0.85, 1), random,
+                      primitives);
         }
     return primitives;
 }

@@ -310,7 +310,7 @@ class MainPath(CliTest):
         self.ok("render", "b.vdb", "-o", "s.png", "--slice", "x=0.5", "--size", "200x160")
 
     def test_every_kind_is_made_and_varies(self):
-        for kind in "balls grid chainmail fibres foam sponge terrain weave".split():
+        for kind in "balls grid chainmail fibres foam sponge terrain weave flowers bumps".split():
             for seed in (0, 1):
                 self.ok("make", kind, f"{kind}{seed}.vdb", "--resolution", 24, "--seed", seed)
             self.assertNotEqual(self.read(f"{kind}0.vdb"), self.read(f"{kind}1.vdb"))

@@ -92,6 +92,41 @@ TEST_CASE("makeExemplar: no two rings of a chainmail fuse at the default feature
     }
 }
 
+TEST_CASE("makeExemplar: no two flowers touch", "[procedural][property]") {
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+        INFO("seed " << seed);
+        RunContext ctx;
+        ctx.seed = seed;
+        const Components parts =
+            findComponents(solidOf(makeExemplar(optionsFor("flowers", 128), ctx)), Neighbours::All);
+        // Sizes vary with the cube of 0.85 to 1.
+        CHECK(parts.interior.size() > 15);
+        CHECK(double(parts.interior.front()) < 2 * double(parts.interior.back()));
+    }
+}
+
+TEST_CASE("makeExemplar: bumps rise from a plane and leave slopes that a height field has",
+          "[procedural][property]") {
+    const ExemplarField made = makeExemplar(optionsFor("bumps", 64));
+    double least = 1e9, most = -1e9, steepest = 0;
+    const auto heightAt = [&](int x, int y) {
+        int z = 0;
+        while (made.field.at({x, y, z}) <= 0) ++z;
+        return z - double(made.field.at({x, y, z}));
+    };
+    for (int x = 0; x < 63; ++x)
+        for (int y = 0; y < 64; ++y) {
+            const double height = heightAt(x, y);
+            least = std::min(least, height);
+            most = std::max(most, height);
+            steepest = std::max(steepest, std::abs(heightAt(x + 1, y) - height));
+        }
+    CHECK(least == Approx(0.35 * 16).margin(0.3));  // the plane, between the bumps
+    CHECK(most > 0.35 * 16 + 0.2 * 16);
+    CHECK(most < 16);
+    CHECK(steepest < 2);
+}
+
 TEST_CASE("makeExemplar: lattice kinds of a larger domain begin with the smaller one's",
           "[procedural][property]") {
     for (const char* kind : {"grid", "fibres"}) {

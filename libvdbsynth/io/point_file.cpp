@@ -148,6 +148,7 @@ PointFile readPoints(const std::string& path, const RunContext& ctx) {
     file.cloud.origin = local.origin;
     file.cloud.normals = std::move(points.normals);
     file.cloud.attributes = std::move(points.attributes);
+    file.comments = std::move(points.comments);
     stage.advance();
     return file;
 }

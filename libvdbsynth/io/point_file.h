@@ -3,6 +3,7 @@
 #include "libvdbsynth/geometry/point_cloud.h"
 
 #include <string>
+#include <vector>
 
 namespace vdbsynth {
 
@@ -22,6 +23,8 @@ bool holdsPoints(const std::string& path);
 struct PointFile {
     PointCloud cloud;
     std::size_t invalid = 0;  ///< points left out because a coordinate was not finite
+    /// Of a .ply's header, in order; texture_box.h and others read what vdb_synth wrote there.
+    std::vector<std::string> comments;
 };
 
 /// Reads a point cloud, with normals if it has them and none has length zero:

@@ -4,6 +4,7 @@
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/geometry/mesh_check.h"
 #include "libvdbsynth/io/readers/mesh_readers.h"
+#include "libvdbsynth/io/readers/ply_file.h"
 #include "libvdbsynth/io/readers/whole_file.h"
 
 #include <algorithm>
@@ -124,17 +125,7 @@ void writeTexturedObj(const std::string& path, const TexturedMesh& textured) {
 }
 
 std::vector<std::string> plyComments(const std::string& path) {
-    const std::string content = readWholeFile(path);
-    std::vector<std::string> comments;
-    for (std::size_t at = 0; at < content.size();) {
-        const std::size_t end = std::min(content.find('\n', at), content.size());
-        std::string line = content.substr(at, std::min<std::size_t>(end - at, 4096));
-        if (!line.empty() && line.back() == '\r') line.pop_back();
-        if (line == "end_header") break;
-        if (line.compare(0, 8, "comment ") == 0) comments.push_back(line.substr(8));
-        at = end + 1;
-    }
-    return comments;
+    return plyCommentsIn(readWholeFile(path));
 }
 
 }  // namespace vdbsynth

@@ -11,9 +11,10 @@ namespace vdbsynth {
 
 /// What a file of points holds, before it becomes a PointCloud.
 struct PointContent {
-    std::vector<Vec3d> points;   ///< as in the file, also those that are not finite
-    std::vector<Vec3f> normals;  ///< one per point, or empty
-    Attributes attributes;       ///< of the points
+    std::vector<Vec3d> points;          ///< as in the file, also those that are not finite
+    std::vector<Vec3f> normals;         ///< one per point, or empty
+    Attributes attributes;              ///< of the points
+    std::vector<std::string> comments;  ///< of a .ply's header
 };
 
 // One reader per format, behind readPoints, which drops non-finite points. `content` is the whole file. What

@@ -263,6 +263,7 @@ PointContent readPlyPoints(const std::string& path, const std::string& content, 
     }
     report(path, header, body, ctx);
     dropNormals(path, cloud.normals, ctx);
+    cloud.comments = plyCommentsIn(content);
     return cloud;
 }
 

@@ -127,6 +127,19 @@ PlyHeader readPlyHeader(const std::string& path, const std::string& content) {
     scanner.fail("the header has no end_header; the file is truncated");
 }
 
+std::vector<std::string> plyCommentsIn(const std::string& content) {
+    std::vector<std::string> comments;
+    for (std::size_t at = 0; at < content.size();) {
+        const std::size_t end = std::min(content.find_first_of("\r\n", at), content.size());
+        std::string line = content.substr(at, std::min<std::size_t>(end - at, 4096));
+        line.erase(line.find_last_not_of(" \t") + 1);
+        if (line == "end_header") break;
+        if (line.compare(0, 8, "comment ") == 0) comments.push_back(line.substr(8));
+        at = end + 1;
+    }
+    return comments;
+}
+
 PlyBody::PlyBody(const std::string& path, const std::string& content, const PlyHeader& header)
     : mPath(path),
       mContent(content),

@@ -38,6 +38,10 @@ struct PlyHeader {
 /// @throw Error BadData
 PlyHeader readPlyHeader(const std::string& path, const std::string& content);
 
+/// The comments of a PLY header, in order, without the word and without blanks at the end; of a
+/// line its first 4096 bytes.
+std::vector<std::string> plyCommentsIn(const std::string& content);
+
 /// Reads the numbers of a PLY body, one after the other, from text or bytes. Where every element of an ascii
 /// body stands on a line of its own, words behind those that the header declares are skipped.
 class PlyBody {

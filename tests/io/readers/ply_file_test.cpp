@@ -161,3 +161,18 @@ TEST_CASE("PlyBody: errors say how much is there", "[io][error]") {
         CHECK(test::contains(thrown.message, says));
     }
 }
+
+TEST_CASE("plyCommentsIn: the header's, in order, whatever ends its lines", "[io]") {
+    const std::vector<std::string> two{"vdb_synth", "a b"};
+    for (const char* end : {"\n", "\r\n", "\r", "  \n"}) {
+        const auto lines = [&](std::initializer_list<const char*> texts) {
+            std::string content;
+            for (const char* text : texts) content += std::string(text) + end;
+            return content;
+        };
+        CHECK(plyCommentsIn(lines({"ply", "comment vdb_synth", "format ascii 1.0", "comment a b",
+                                   "obj_info comment no", "end_header", "comment data"})) == two);
+    }
+    CHECK(plyCommentsIn("").empty());
+    CHECK(plyCommentsIn("comment " + std::string(5000, 'x')).front().size() == 4096 - 8);
+}

@@ -11,17 +11,17 @@ for room, direct in [
     ("base", []), ("math", ["base"]), ("geometry", ["math"]), ("points", ["geometry"]), ("grid", ["geometry"]),
     ("distance", ["grid"]), ("solid", ["distance"]), ("raster", ["distance"]), ("map", ["grid"]),
     ("io", ["raster", "solid"]), ("procedural", ["distance"]), ("surface", ["grid", "points"]), ("search", ["io"]),
-    ("coordinates", ["search", "surface"]), ("texture", ["coordinates", "map"]), ("relief", ["coordinates", "map", "distance"]),
+    ("coordinates", ["search", "surface"]), ("patch", ["points"]), ("texture", ["coordinates", "map"]), ("relief", ["coordinates", "map", "distance"]),
     ("synth", ["search", "map"]), ("analogy", ["search", "surface", "map"]), ("measure", ["relief", "synth"]),
     ("vdb", ["io", "map", "solid"]), ("render", ["vdb"]),
-    ("pipeline", ["measure", "synth", "analogy", "texture", "relief", "procedural", "render"]), ("tools", ["pipeline"]),
+    ("pipeline", ["measure", "synth", "analogy", "patch", "texture", "relief", "procedural", "render"]), ("tools", ["pipeline"]),
 ]:
     BELOW[room] = {room}.union(*[BELOW[d] for d in direct]) if direct else {room}
 
 # Which rooms may see which third party.
 ALLOWED = {
     "openvdb/": {"vdb", "render", "pipeline"}, "tbb/": {"base"}, "xxhash.h": {"base"}, "png.h": {"io"},
-    "tiny_obj_loader.h": {"io"}, "tiffio.h": {"io"}, "jpeglib.h": {"io"}, "Imf": {"io"}, "pugixml.hpp": {"io"}, "tiny_gltf.h": {"io"}, "zlib.h": {"io"}, "nanoflann.hpp": {"geometry"}, "flann/": {"search"}, "Eigen/": {"math", "geometry"}, "boost/graph/": {"math"}, "boost/program_options": {"tools"}, "nlohmann/": {"io", "tools"},
+    "tiny_obj_loader.h": {"io"}, "tiffio.h": {"io"}, "jpeglib.h": {"io"}, "Imf": {"io"}, "pugixml.hpp": {"io"}, "tiny_gltf.h": {"io"}, "zlib.h": {"io"}, "nanoflann.hpp": {"geometry"}, "flann/": {"search"}, "Eigen/": {"math", "geometry", "patch"}, "boost/graph/": {"math"}, "boost/program_options": {"tools"}, "nlohmann/": {"io", "tools"},
 }
 ONE_FILE = {"png.h", "zlib.h", "nanoflann.hpp", "flann/", "tiny_obj_loader.h", "tiffio.h", "jpeglib.h", "Imf", "tiny_gltf.h", "xxhash.h", "boost/graph/", "boost/program_options"}
 

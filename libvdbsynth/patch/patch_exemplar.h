@@ -1,0 +1,49 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/math/vec3.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace vdbsynth {
+
+/// The two axes along which a geometry texture lies; the third is its height.
+enum class PatchPlane { XY, YZ, ZX };
+
+/// Turns a place or direction so that the plane is x, y and the height z: a cyclic change of axes, so that
+/// nothing is mirrored.
+Vec3d toPlane(PatchPlane plane, const Vec3d& world);
+/// The inverse of toPlane.
+Vec3d fromPlane(PatchPlane plane, const Vec3d& place);
+
+/// A geometry texture [duranleau2006, section 3]: oriented points that go on beyond a box. Plane space: x and
+/// y along the reference plane, z the height, the box's minimum corner at the origin.
+struct PatchExemplar {
+    std::vector<Vec3f> points;   ///< [points] plane space [world]; in the box and in a margin around it
+    std::vector<Vec3f> normals;  ///< [points] of length 1
+    std::vector<std::uint32_t> number;  ///< [points] of the cloud that it was made from
+    Vec3d size;                         ///< [world] of the box
+    double spacing = 0;                 ///< [world] median of the points' distances to their neighbours
+    PatchPlane plane = PatchPlane::XY;
+    Vec3d corner;  ///< [world] the box's minimum corner, axes as in the file
+
+    /// From plane space to the file's.
+    Vec3d toWorld(const Vec3d& place) const { return fromPlane(plane, place) + corner; }
+};
+
+/// The box of a texture, axes as in the file [world].
+struct PatchBox {
+    Vec3d min, max;
+};
+
+/// @param points, normals  world space, finite; normals of any length over 0
+/// @param spacing  [world] of the points, over 0
+/// Along the height the box is made to hold all points, whatever `box` says.
+/// @throw Error ShapeMismatch (other number of normals), EmptyInput (no point in the box), InvalidOption (an
+/// empty box, a spacing that is not above 0)
+/// @par Cost    O(points)   @par Repeats yes
+PatchExemplar patchExemplar(const std::vector<Vec3f>& points, const std::vector<Vec3f>& normals,
+                            const PatchBox& box, PatchPlane plane, double spacing);
+
+}  // namespace vdbsynth

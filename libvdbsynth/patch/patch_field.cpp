@@ -1,0 +1,86 @@
+#include "libvdbsynth/patch/patch_field.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/points/point_set_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace vdbsynth {
+namespace {
+
+constexpr double kMostNodes = 2147483648.0;
+
+// The nodes that no point is near take the side of the nearest known one of their column, the lower of two.
+void fillColumn(float* column, int nz, const std::vector<bool>& known) {
+    int below = -1;
+    for (int k = 0; k < nz; ++k) {
+        if (known[std::size_t(k)]) {
+            below = k;
+            continue;
+        }
+        int above = k + 1;
+        while (above < nz && !known[std::size_t(above)]) ++above;
+        const bool fromBelow = below >= 0 && (above >= nz || k - below <= above - k);
+        const int from = fromBelow ? below : above < nz ? above : -1;
+        const float side = from >= 0 ? column[from * kFieldValues] : 1.f;
+        column[k * kFieldValues] = side < 0 ? -kFieldReach : kFieldReach;
+    }
+}
+
+void measureColumn(const PointSetSurface& surface, const Vec3d& lowest, double step, int nz, float* column) {
+    std::vector<bool> known(std::size_t(nz), false);
+    for (int k = 0; k < nz; ++k) {
+        const Vec3d place = lowest + Vec3d{0, 0, k * step};
+        const auto foot = surface.project(place);
+        if (!foot) continue;
+        const Vec3d away = place - foot->point;
+        const double distance = length(away) / step;
+        if (distance > 2.0 * kFieldReach) continue;
+        const bool inside = dot(away, foot->normal) < 0;
+        const Vec3d gradient = distance > 1e-6 ? away * ((inside ? -1 : 1) / length(away)) : foot->normal;
+        const float values[kFieldValues] = {std::min(float(distance), kFieldReach) * (inside ? -1.f : 1.f),
+                                            float(gradient.x), float(gradient.y), float(gradient.z)};
+        std::copy(values, values + kFieldValues, column + k * kFieldValues);
+        known[std::size_t(k)] = true;
+    }
+    fillColumn(column, nz, known);
+}
+
+}  // namespace
+
+PatchLattice latticeOf(const Vec3d& size, double step) {
+    if (!(step > 0)) throw Error(ErrorCode::InvalidOption, "the field's step must be above 0");
+    double nodes = 1;
+    int sides[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        const double side = std::max(1.0, std::ceil(size[axis] / step - 1e-6));
+        nodes *= side;
+        if (!(nodes < kMostNodes))
+            throw Error(ErrorCode::Memory,
+                        "a field over the sheet has over 2^31 places; a larger step or a "
+                        "smaller sheet has fewer");
+        sides[axis] = int(side);
+    }
+    return {step, sides[0], sides[1], sides[2]};
+}
+
+PatchField patchField(const PointSetSurface& surface, const PatchLattice& lattice, const Vec3d& origin,
+                      const RunContext& ctx) {
+    PatchField field{lattice, std::vector<float>(lattice.nodes() * kFieldValues, 0.f)};
+    Stage stage(ctx, "distances of the exemplar", std::size_t(lattice.nx));
+    for (int i = 0; i < lattice.nx; ++i) {
+        parallelFor(ctx, std::size_t(lattice.ny), 4, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t j = begin; j < end; ++j)
+                measureColumn(surface, origin + lattice.place(i, int(j), 0), lattice.step, lattice.nz,
+                              field.values.data() + lattice.column(i, int(j)) * field.columnLength());
+        });
+        stage.advance();
+    }
+    return field;
+}
+
+}  // namespace vdbsynth

@@ -1,0 +1,81 @@
+#include "libvdbsynth/patch/patch_size.h"
+
+#include "libvdbsynth/base/parallel.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace vdbsynth {
+namespace {
+
+constexpr double kRise = 0.1, kUncorrelated = 0.2;
+
+// Distances less the mean of their height.
+std::vector<double> centred(const PatchField& field) {
+    const PatchLattice& l = field.lattice;
+    std::vector<double> mean(std::size_t(l.nz), 0.0), values(l.nodes());
+    for (std::size_t c = 0; c < l.columns(); ++c)
+        for (std::size_t k = 0; k < std::size_t(l.nz); ++k)
+            mean[k] += double(field.values[(c * std::size_t(l.nz) + k) * kFieldValues]) / double(l.columns());
+    for (std::size_t c = 0; c < l.columns(); ++c)
+        for (std::size_t k = 0; k < std::size_t(l.nz); ++k)
+            values[c * std::size_t(l.nz) + k] =
+                double(field.values[(c * std::size_t(l.nz) + k) * kFieldValues]) - mean[k];
+    return values;
+}
+
+double product(const std::vector<double>& values, const PatchLattice& l, int di, int dj) {
+    double sum = 0;
+    for (int i = 0; i + di < l.nx; ++i)
+        for (int j = 0; j + dj < l.ny; ++j) {
+            const double* a = values.data() + l.column(i, j) * std::size_t(l.nz);
+            const double* b = values.data() + l.column(i + di, j + dj) * std::size_t(l.nz);
+            for (int k = 0; k < l.nz; ++k) sum += a[k] * b[k];
+        }
+    return sum / (double(l.nx - di) * double(l.ny - dj));
+}
+
+PatchFeature featureOf(const std::vector<double>& correlation) {
+    const std::size_t count = correlation.size();
+    std::size_t low = 1;
+    while (low + 1 < count && correlation[low + 1] < correlation[low]) ++low;
+    std::size_t high = low;
+    for (std::size_t l = low; l < count; ++l) {
+        if (correlation[l] > correlation[high]) high = l;
+        // Past the first maximum that is worth the name.
+        if (correlation[high] - correlation[low] > kRise && correlation[l] < correlation[high] - kRise) break;
+        if (correlation[l] < correlation[low]) low = high = l;
+    }
+    if (correlation[high] - correlation[low] > kRise && high + 1 < count) return {int(high), true};
+    for (std::size_t l = 1; l < count; ++l)
+        if (correlation[l] < kUncorrelated) return {int(l), false};
+    return {int(count), false};
+}
+
+}  // namespace
+
+PatchFeature patchFeature(const PatchField& exemplar, const RunContext& ctx) {
+    const std::vector<double> values = centred(exemplar);
+    const PatchLattice& l = exemplar.lattice;
+    const double whole = product(values, l, 0, 0);
+    if (whole <= 0) return {std::max(1, std::min(l.nx, l.ny) / 2), false};
+    PatchFeature feature;
+    for (const bool alongX : {true, false}) {
+        const int lags = std::max(2, (alongX ? l.nx : l.ny) * 2 / 3);
+        std::vector<double> correlation(static_cast<std::size_t>(lags));
+        parallelFor(ctx, correlation.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t lag = begin; lag < end; ++lag)
+                correlation[lag] = product(values, l, alongX ? int(lag) : 0, alongX ? 0 : int(lag)) / whole;
+        });
+        const PatchFeature along = featureOf(correlation);
+        if (along.columns >= feature.columns) feature = along;
+    }
+    return feature;
+}
+
+int patchSide(const PatchField& exemplar, const PatchFeature& feature) {
+    const int shorter = std::min(exemplar.lattice.nx, exemplar.lattice.ny);
+    return std::max(std::min(shorter, 2), std::min(std::max(6, feature.columns * 3 / 2), shorter * 2 / 3));
+}
+
+}  // namespace vdbsynth

@@ -1,0 +1,203 @@
+#include "libvdbsynth/patch/patch_synthesis.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/patch/layout/patch_layout.h"
+#include "libvdbsynth/patch/patch_size.h"
+#include "libvdbsynth/patch/scanline/pairing_weights.h"
+#include "libvdbsynth/patch/scanline/scanline_patches.h"
+#include "libvdbsynth/points/point_set_surface.h"
+#include "libvdbsynth/points/surface_variation.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+
+namespace vdbsynth {
+namespace {
+
+constexpr double kOverlap = 0.25;
+constexpr int kProbes = 8;
+
+double secondsSince(std::chrono::steady_clock::time_point begin) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+PointSetSurface surfaceOf(const PatchExemplar& exemplar, PointSetKind kind, const RunContext& ctx) {
+    PointSetSurfaceOptions options;
+    options.kind = kind;
+    return PointSetSurface(exemplar.points, exemplar.normals, options, ctx);
+}
+
+// In columns of the field.
+struct PatchSides {
+    int patch = 0, overlap = 0;
+};
+
+PatchSides sidesOf(const PatchField& field, const PatchOptions& options, const RunContext& ctx) {
+    const PatchLattice& l = field.lattice;
+    PatchSides sides;
+    if (options.patch > 0) {
+        sides.patch = int(std::lround(options.patch / l.step));
+        if (sides.patch > std::min(l.nx, l.ny))
+            throw Error(ErrorCode::Unusable, "`patch` " + roundedText(options.patch, 4) +
+                                                 " is larger than the exemplar, " +
+                                                 roundedText(std::min(l.nx, l.ny) * l.step, 4) + " wide");
+        if (sides.patch < 4)
+            throw Error(ErrorCode::InvalidOption, "`patch` " + roundedText(options.patch, 4) +
+                                                      " is under four steps of the field, " +
+                                                      roundedText(4 * l.step, 4));
+    } else {
+        const PatchFeature feature = patchFeature(field, ctx);
+        sides.patch = patchSide(field, feature);
+        message(
+            ctx, MessageLevel::Detail,
+            std::string(feature.repeats ? "the exemplar repeats every " : "the exemplar's features are ") +
+                roundedText(feature.columns * l.step, 4) + (feature.repeats ? "" : " wide") +
+                "; patches are " + roundedText(sides.patch * l.step, 4) + " wide (world)");
+        if (sides.patch < 4)
+            throw Error(ErrorCode::Unusable,
+                        "the exemplar is only " + roundedText(std::min(l.nx, l.ny) * l.step, 4) +
+                            " wide, too small for a patch of four steps of " + roundedText(l.step, 4));
+    }
+    const double share = options.overlap > 0 ? options.overlap : kOverlap;
+    sides.overlap = std::clamp(int(std::lround(share * sides.patch)), 2, sides.patch - 1);
+    return sides;
+}
+
+void cropTo(double width, double depth, SheetPoints& sheet) {
+    SheetPoints kept;
+    for (std::size_t p = 0; p < sheet.size(); ++p) {
+        const Vec3f& at = sheet.points[p];
+        if (at.x < 0 || at.y < 0 || double(at.x) >= width || double(at.y) >= depth) continue;
+        kept.points.push_back(at);
+        kept.normals.push_back(sheet.normals[p]);
+        kept.source.push_back(sheet.source[p]);
+        kept.patch.push_back(sheet.patch[p]);
+        kept.blended.push_back(sheet.blended[p]);
+    }
+    sheet = std::move(kept);
+}
+
+SheetOptions sheetOptionsOf(const PatchOptions& options, double reach) {
+    SheetOptions sheet;
+    sheet.reach = options.warp ? reach : 0;
+    sheet.blend = options.blend;
+    return sheet;
+}
+
+PatchResult byPaper(const PatchExemplar& exemplar, const PatchField& field, const PatchSides& sides,
+                    const PatchOptions& options, const RunContext& ctx) {
+    ScanlineOptions scanline;
+    scanline.patch = sides.patch;
+    scanline.margin = sides.overlap;
+    scanline.tolerance = options.tolerance;
+    scanline.pairing.limits = options.limits;
+    scanline.pairing.rounds = options.rounds;
+    if (options.seedPlace) {
+        const Vec3d place =
+            toPlane(exemplar.plane, *options.seedPlace - exemplar.corner) * (1 / field.lattice.step);
+        scanline.seed = PatchPlace{int(std::lround(place.x)), int(std::lround(place.y))};
+    }
+    scanline.pairing.weights =
+        options.weights
+            ? *options.weights
+            : nearMatchWeights(exemplar, surfaceVariation(exemplar.points, exemplar.normals, 16, ctx), field,
+                               sides.patch, sides.overlap, kProbes, ctx);
+    ScanlineResult made = scanlinePatches(exemplar, field, {options.width, options.depth, 0}, scanline, ctx);
+    PatchResult result;
+    result.sheet = std::move(made.sheet);
+    result.patches = made.patches;
+    result.pairs = made.pairs;
+    result.unwarped = made.unwarped;
+    result.weights = scanline.pairing.weights;
+    result.search = made.seconds.search;
+    result.warp = made.seconds.warp;
+    result.blend = made.seconds.blend;
+    result.other = made.seconds.other;
+    return result;
+}
+
+PatchResult byCuts(const PatchExemplar& exemplar, const PointSetSurface& surface, const PatchField& field,
+                   const PatchSides& sides, const PatchOptions& options, const RunContext& ctx) {
+    const auto columns = [&](double side) { return int(std::ceil(side / field.lattice.step - 1e-6)); };
+    PatchResult result;
+    auto begin = std::chrono::steady_clock::now();
+    result.arrangement =
+        layPatches(field, columns(options.width), columns(options.depth),
+                   {sides.patch, sides.overlap, options.tolerance, options.tile, options.repairs}, ctx);
+    result.search = secondsSince(begin);
+    begin = std::chrono::steady_clock::now();
+    SheetResult made = sheetPoints(exemplar, surface, field, result.arrangement,
+                                   sheetOptionsOf(options, sides.overlap), ctx);
+    result.warp = secondsSince(begin);
+    result.sheet = std::move(made.sheet);
+    result.borders = made.borders;
+    result.patches = result.arrangement.patches.size();
+    cropTo(options.width, options.depth, result.sheet);
+    return result;
+}
+
+}  // namespace
+
+void validate(const PatchOptions& options) {
+    const auto require = [](bool holds, const char* text) {
+        if (!holds) throw Error(ErrorCode::InvalidOption, text);
+    };
+    require(options.width > 0 && options.depth > 0, "`size` must be above 0");
+    require(options.patch >= 0, "`patch` must be at least 0");
+    require(options.overlap == 0 || (options.overlap >= 0.05 && options.overlap <= 0.8),
+            "`overlap` must be 0.05..0.8");
+    require(options.tolerance >= 0 && options.tolerance <= 10, "`tolerance` must be 0..10");
+    require(options.step >= 0.5 && options.step <= 16, "`step` must be 0.5..16");
+    require(options.repairs >= 0 && options.repairs <= 20, "`repairs` must be 0..20");
+    PairingOptions pairing;
+    if (options.weights) pairing.weights = *options.weights;
+    pairing.limits = options.limits;
+    pairing.rounds = options.rounds;
+    validate(pairing);
+}
+
+PatchResult synthesizePatches(const PatchExemplar& exemplar, const PatchOptions& options,
+                              const RunContext& ctx) {
+    validate(options);
+    const auto begin = std::chrono::steady_clock::now();
+    const bool paper = options.method == PatchMethod::Paper;
+    const PointSetSurface surface =
+        surfaceOf(exemplar, paper ? PointSetKind::AdamsonAlexa : PointSetKind::Apss, ctx);
+    const PatchField field =
+        patchField(surface, latticeOf(exemplar.size, options.step * exemplar.spacing), {}, ctx);
+    const PatchSides sides = sidesOf(field, options, ctx);
+    const double prepared = secondsSince(begin);
+    PatchResult result = paper ? byPaper(exemplar, field, sides, options, ctx)
+                               : byCuts(exemplar, surface, field, sides, options, ctx);
+    result.other += prepared;
+    result.patch = sides.patch * field.lattice.step;
+    result.overlap = sides.overlap * field.lattice.step;
+    result.step = field.lattice.step;
+    return result;
+}
+
+SheetResult repeatPatches(const PatchExemplar& exemplar, const PatchArrangement& arrangement,
+                          const PatchOptions& options, const RunContext& ctx) {
+    validate(options);
+    const PointSetSurface surface = surfaceOf(exemplar, PointSetKind::Apss, ctx);
+    const PatchField field = patchField(surface, latticeOf(exemplar.size, arrangement.lattice.step), {}, ctx);
+    int overlap = 1;
+    for (const LaidPatch& patch : arrangement.patches) {
+        if (patch.from.i < 0 || patch.from.j < 0 || patch.from.i + patch.nx > field.lattice.nx ||
+            patch.from.j + patch.ny > field.lattice.ny || field.lattice.nz != arrangement.lattice.nz)
+            throw Error(
+                ErrorCode::ShapeMismatch,
+                "the map's patches reach beyond this exemplar; give one whose box is that of the run's own");
+        overlap = std::max(overlap,
+                           int(std::lround((options.overlap > 0 ? options.overlap : kOverlap) * patch.nx)));
+    }
+    SheetResult result =
+        sheetPoints(exemplar, surface, field, arrangement, sheetOptionsOf(options, overlap), ctx);
+    cropTo(options.width, options.depth, result.sheet);
+    return result;
+}
+
+}  // namespace vdbsynth

@@ -111,7 +111,7 @@ std::vector<PatchCandidate> patchCandidates(const PatchField& exemplar, const Pa
     const std::size_t length = exemplar.columnLength(), values = overlap.columns.size() * length;
     const Query query = queryOf(exemplar, overlap);
     std::atomic<double> least{std::numeric_limits<double>::infinity()};
-    std::vector<std::vector<PatchCandidate>> found(std::size_t(rows), std::vector<PatchCandidate>());
+    std::vector<std::vector<PatchCandidate>> found(static_cast<std::size_t>(rows));
     parallelFor(ctx, std::size_t(rows), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             for (int j = 0; j < across; ++j) {

@@ -37,6 +37,7 @@ PatchExemplar patchExemplar(const std::vector<Vec3f>& points, const std::vector<
     Vec3d low = toPlane(plane, box.min), high = toPlane(plane, box.max);
     if (!(high.x > low.x && high.y > low.y))
         throw Error(ErrorCode::InvalidOption, "the texture's box is empty");
+    const Vec3d given{low.z, high.z, 0};
     low.z = std::numeric_limits<double>::infinity();
     high.z = -low.z;
     std::size_t inside = 0;
@@ -48,8 +49,8 @@ PatchExemplar patchExemplar(const std::vector<Vec3f>& points, const std::vector<
         high.z = std::max(high.z, place.z);
     }
     if (inside == 0) throw Error(ErrorCode::EmptyInput, "no point lies in the texture's box");
-    low.z -= kAbove * spacing;
-    high.z += kAbove * spacing;
+    low.z = std::min(given.x, low.z - kAbove * spacing);
+    high.z = std::max(given.y, high.z + kAbove * spacing);
     PatchExemplar exemplar;
     exemplar.size = high - low;
     exemplar.spacing = spacing;

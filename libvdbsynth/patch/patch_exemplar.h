@@ -39,7 +39,7 @@ struct PatchBox {
 
 /// @param points, normals  world space, finite; normals of any length over 0
 /// @param spacing  [world] of the points, over 0
-/// Along the height the box is made to hold all points, whatever `box` says.
+/// Along the height the box is made larger where it does not hold all points and two spacings beyond them.
 /// @throw Error ShapeMismatch (other number of normals), EmptyInput (no point in the box), InvalidOption (an
 /// empty box, a spacing that is not above 0)
 /// @par Cost    O(points)   @par Repeats yes

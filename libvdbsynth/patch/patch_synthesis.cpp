@@ -66,18 +66,34 @@ PatchSides sidesOf(const PatchField& field, const PatchOptions& options, const R
     return sides;
 }
 
-void cropTo(double width, double depth, SheetPoints& sheet) {
+// Where a sheet's lattice begins, before its first column: a tile has no border of its own.
+double beginOf(const PatchOptions& options) {
+    return options.tile ? 0 : -options.border;
+}
+
+void add(const SheetPoints& from, std::size_t point, const Vec3f& place, SheetPoints& to) {
+    to.points.push_back(place);
+    to.normals.push_back(from.normals[point]);
+    to.source.push_back(from.source[point]);
+    to.patch.push_back(from.patch[point]);
+    to.blended.push_back(from.blended[point]);
+}
+
+// Moves the sheet so that it begins at 0, and keeps it and its border; a tile's border is its other side.
+SheetPoints placed(const SheetPoints& sheet, const PatchOptions& options) {
+    const double border = options.border, begin = beginOf(options);
+    const int periods = options.tile && border > 0 ? 1 : 0;
     SheetPoints kept;
-    for (std::size_t p = 0; p < sheet.size(); ++p) {
-        const Vec3f& at = sheet.points[p];
-        if (at.x < 0 || at.y < 0 || double(at.x) >= width || double(at.y) >= depth) continue;
-        kept.points.push_back(at);
-        kept.normals.push_back(sheet.normals[p]);
-        kept.source.push_back(sheet.source[p]);
-        kept.patch.push_back(sheet.patch[p]);
-        kept.blended.push_back(sheet.blended[p]);
-    }
-    sheet = std::move(kept);
+    for (int i = -periods; i <= periods; ++i)
+        for (int j = -periods; j <= periods; ++j)
+            for (std::size_t p = 0; p < sheet.size(); ++p) {
+                const Vec3d at = cast<double>(sheet.points[p]) +
+                                 Vec3d{begin + i * options.width, begin + j * options.depth, 0};
+                if (at.x >= -border && at.y >= -border && at.x < options.width + border &&
+                    at.y < options.depth + border)
+                    add(sheet, p, cast<float>(at), kept);
+            }
+    return kept;
 }
 
 SheetOptions sheetOptionsOf(const PatchOptions& options, double reach) {
@@ -105,7 +121,8 @@ PatchResult byPaper(const PatchExemplar& exemplar, const PatchField& field, cons
             ? *options.weights
             : nearMatchWeights(exemplar, surfaceVariation(exemplar.points, exemplar.normals, 16, ctx), field,
                                sides.patch, sides.overlap, kProbes, ctx);
-    ScanlineResult made = scanlinePatches(exemplar, field, {options.width, options.depth, 0}, scanline, ctx);
+    ScanlineResult made =
+        scanlinePatches(exemplar, field, {options.width, options.depth, options.border}, scanline, ctx);
     PatchResult result;
     result.sheet = std::move(made.sheet);
     result.patches = made.patches;
@@ -124,9 +141,9 @@ PatchResult byCuts(const PatchExemplar& exemplar, const PointSetSurface& surface
     const auto columns = [&](double side) { return int(std::ceil(side / field.lattice.step - 1e-6)); };
     PatchResult result;
     auto begin = std::chrono::steady_clock::now();
-    result.arrangement =
-        layPatches(field, columns(options.width), columns(options.depth),
-                   {sides.patch, sides.overlap, options.tolerance, options.tile, options.repairs}, ctx);
+    result.arrangement = layPatches(
+        field, columns(options.width - 2 * beginOf(options)), columns(options.depth - 2 * beginOf(options)),
+        {sides.patch, sides.overlap, options.tolerance, options.tile, options.repairs}, ctx);
     result.search = secondsSince(begin);
     begin = std::chrono::steady_clock::now();
     SheetResult made = sheetPoints(exemplar, surface, field, result.arrangement,
@@ -135,7 +152,7 @@ PatchResult byCuts(const PatchExemplar& exemplar, const PointSetSurface& surface
     result.sheet = std::move(made.sheet);
     result.borders = made.borders;
     result.patches = result.arrangement.patches.size();
-    cropTo(options.width, options.depth, result.sheet);
+    result.sheet = placed(result.sheet, options);
     return result;
 }
 
@@ -146,6 +163,7 @@ void validate(const PatchOptions& options) {
         if (!holds) throw Error(ErrorCode::InvalidOption, text);
     };
     require(options.width > 0 && options.depth > 0, "`size` must be above 0");
+    require(options.border >= 0 && options.border < 1e30, "`border` must be at least 0");
     require(options.patch >= 0, "`patch` must be at least 0");
     require(options.overlap == 0 || (options.overlap >= 0.05 && options.overlap <= 0.8),
             "`overlap` must be 0.05..0.8");
@@ -196,7 +214,7 @@ SheetResult repeatPatches(const PatchExemplar& exemplar, const PatchArrangement&
     }
     SheetResult result =
         sheetPoints(exemplar, surface, field, arrangement, sheetOptionsOf(options, overlap), ctx);
-    cropTo(options.width, options.depth, result.sheet);
+    result.sheet = placed(result.sheet, options);
     return result;
 }
 

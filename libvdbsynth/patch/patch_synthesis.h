@@ -15,6 +15,7 @@ enum class PatchMethod { Default, Paper };
 struct PatchOptions {
     PatchMethod method = PatchMethod::Default;
     double width = 0, depth = 0;  ///< [world] of the sheet along the plane's first and second axis
+    double border = 0;            ///< [world] at least 0: how far the points go on beyond that on all sides
     double patch = 0;             ///< [world] side of a patch; 0: one and a half features (patch_size.h)
     double overlap = 0;           ///< 0.05..0.8 of a patch over earlier ones; 0: a quarter
     double tolerance = 0.1;       ///< 0..10, e: candidates within (1 + e) of the best are drawn from
@@ -38,7 +39,7 @@ struct PatchOptions {
 void validate(const PatchOptions& options);
 
 struct PatchResult {
-    SheetPoints sheet;                        ///< plane space, [0, width) x [0, depth)
+    SheetPoints sheet;  ///< plane space; the sheet is [0, width) x [0, depth), its border around it
     PatchArrangement arrangement;             ///< of the default method: the source map; else empty
     double patch = 0, overlap = 0, step = 0;  ///< [world] as used
     std::size_t patches = 0;

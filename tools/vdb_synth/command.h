@@ -93,6 +93,6 @@ std::string helpText(const Command& command);
 void printLine(const std::string& text);
 
 extern const Command kAnalogy, kCompare, kConvert, kInfo, kCrop, kMask, kMatch, kSynth, kTexture, kRepeat,
-    kRender, kMake, kRelief, kReliefExtract;
+    kRender, kMake, kRelief, kReliefExtract, kPatch;
 
 }  // namespace vdbsynth::cli

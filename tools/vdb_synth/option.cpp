@@ -141,6 +141,10 @@ std::string allowedText(const Option& option) {
             return "a smaller and a larger number with a comma, for example -1,0.5";
         case Kind::Box:
             return "six whole numbers i,j,k,I,J,K, every minimum at most its maximum";
+        case Kind::SheetSizes:
+            return "two sizes with a comma, each a length above 0 (world) or a multiple such as 4x, for "
+                   "example "
+                   "4x,4x or 2.5,1";
         case Kind::Sizes:
             return "three sizes with commas, each in voxels (1 to 1048576) or a multiple (from 1x), for "
                    "example 2x,2x,1x or 128,128,64";

@@ -21,6 +21,7 @@ enum class Kind {
     WholeTriple,  ///< three whole numbers, each from `low` to `high`
     Range,        ///< two numbers with a comma, the first not above the second
     Box,          ///< i,j,k,I,J,K, both corners inclusive
+    SheetSizes,   ///< two sizes, each a length or a multiple such as 4x
     Sizes,        ///< three sizes, each in voxels or a multiple such as 2x
     Pixels,       ///< WIDTHxHEIGHT, each from `low` to `high`
     Slice,        ///< an axis and a fraction: z=0.5

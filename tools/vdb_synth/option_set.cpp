@@ -174,6 +174,12 @@ IndexBox Arguments::box(const std::string& name) const {
     return box;
 }
 
+std::array<SizeValue, 2> Arguments::sheetSizes(const std::string& name) const {
+    std::array<SizeValue, 2> sizes;
+    readSheetSizes(text(name), sizes);
+    return sizes;
+}
+
 std::array<SizeValue, 3> Arguments::sizes(const std::string& name) const {
     std::array<SizeValue, 3> sizes;
     readSizes(text(name), sizes);

@@ -46,6 +46,7 @@ public:
     Index3 wholeTriple(const std::string& name) const;
     std::pair<double, double> range(const std::string& name) const;
     IndexBox box(const std::string& name) const;
+    std::array<SizeValue, 2> sheetSizes(const std::string& name) const;
     std::array<SizeValue, 3> sizes(const std::string& name) const;
     std::array<int, 2> pixels(const std::string& name) const;
     SliceValue slice(const std::string& name) const;

@@ -79,6 +79,17 @@ std::string normalSizes(const Option& option, const std::string& given) {
     return joined(parts);
 }
 
+std::string normalSheetSizes(const Option& option, const std::string& given) {
+    std::array<SizeValue, 2> sizes;
+    if (!readSheetSizes(given, sizes)) refuseValue(option, given);
+    std::vector<std::string> parts;
+    for (const SizeValue& size : sizes) {
+        if (!(size.value > 0 && size.value <= (size.multiple ? 1e6 : 1e30))) refuseValue(option, given);
+        parts.push_back(exactText(size.value) + (size.multiple ? "x" : ""));
+    }
+    return joined(parts);
+}
+
 std::string normalNumbers(const Option& option, const std::string& given) {
     std::vector<std::string> parts;
     std::array<double, 3> triple{};
@@ -240,6 +251,8 @@ std::string normalValue(const Option& option, const std::string& given) {
         case Kind::Box:
             if (!readBox(given, box)) refuseValue(option, given);
             return normalBox(box);
+        case Kind::SheetSizes:
+            return normalSheetSizes(option, given);
         case Kind::Sizes:
             return normalSizes(option, given);
         case Kind::Pixels:

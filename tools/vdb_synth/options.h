@@ -33,6 +33,7 @@ std::string inFlags(const std::string& text, const std::string& command);
 std::vector<Option> modelOptionTable();
 std::vector<Option> methodOptionTable();
 std::vector<Option> textureOptionTable();
+std::vector<Option> patchOptionTable();
 std::vector<Option> reliefOptionTable();
 std::vector<Option> reliefExtractOptionTable();
 std::vector<Option> runningOptionTable();

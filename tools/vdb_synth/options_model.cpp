@@ -2,17 +2,26 @@
 #include "tools/vdb_synth/option_makers.h"
 #include "tools/vdb_synth/options.h"
 
+#include <algorithm>
+
 namespace vdbsynth::cli {
 namespace {
 
 using Names = std::vector<std::string>;
 
 // Commands that take any geometry and convert it to a level set.
-const Names kModel{"convert", "crop",   "mask",    "match",  "synth",  "analogy",
-                   "texture", "repeat", "compare", "render", "relief", "relief-extract"};
+const Names kModel{"convert", "crop",    "mask",   "match", "synth",  "analogy",       "texture",
+                   "repeat",  "compare", "render", "patch", "relief", "relief-extract"};
 
 // The relief commands have a base of their own.
 const Names kWithImageBase(kModel.begin(), kModel.end() - 2);
+
+// Patch has a plane of its own.
+const Names kWithImagePlane = [] {
+    Names names = kModel;
+    names.erase(std::find(names.begin(), names.end(), "patch"));
+    return names;
+}();
 
 std::vector<Option> inputTable() {
     const auto with = [](Names names, const Names& more) {
@@ -100,7 +109,7 @@ std::vector<Option> inputTable() {
             .says("half-width of the narrow band of the result")
             .initially("3")
             .takenBy({"convert", "crop", "synth", "analogy", "texture", "repeat", "make", "relief",
-                      "relief-extract"})
+                      "relief-extract", "patch"})
             .butFor("repeat",
                     [](Option& o) { o.initially("").otherwiseIs("that of the run that wrote the map"); }),
     };
@@ -142,7 +151,7 @@ std::vector<Option> rasterTable() {
             .says("plane of an image")
             .initially("xy")
             .noting("heights go along the third axis")
-            .takenBy(kModel),
+            .takenBy(kWithImagePlane),
         real("threshold", "VALUE")
             .in(Group::Raster)
             .says("a volume (npy, tif, vti, nii ...) is solid above this value")
@@ -246,7 +255,7 @@ std::vector<Option> outputTable() {
             .says("merge flat parts of a mesh output")
             .initially("0")
             .noting("0 keeps all faces")
-            .takenBy({"convert", "synth", "analogy", "repeat", "relief"}),
+            .takenBy({"convert", "synth", "analogy", "repeat", "relief", "patch"}),
         flag("sharp")
             .in(Group::Output)
             .says(

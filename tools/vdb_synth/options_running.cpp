@@ -5,15 +5,15 @@
 namespace vdbsynth::cli {
 
 std::vector<Option> runningOptionTable() {
-    const std::vector<std::string> every{"convert", "info",    "crop",    "mask",          "match",
-                                         "synth",   "analogy", "texture", "repeat",        "compare",
-                                         "render",  "make",    "relief",  "relief-extract"};
+    const std::vector<std::string> every{"convert", "info",    "crop",    "mask",           "match",
+                                         "synth",   "analogy", "texture", "repeat",         "compare",
+                                         "render",  "make",    "relief",  "relief-extract", "patch"};
     std::vector<Option> table{
         option(Kind::Seed, "seed", "N")
             .says("seed of everything random")
             .initially("0")
             .noting("the same seed gives the same bytes")
-            .takenBy({"convert", "synth", "analogy", "texture", "make", "compare", "relief"}),
+            .takenBy({"convert", "synth", "analogy", "texture", "make", "compare", "relief", "patch"}),
         whole("threads", "N", 0, 1024)
             .says("number of threads")
             .initially("0")

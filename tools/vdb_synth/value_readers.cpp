@@ -107,15 +107,29 @@ bool readBox(const std::string& text, IndexBox& box) {
     return true;
 }
 
+namespace {
+
+bool readSize(std::string part, SizeValue& size) {
+    size.multiple = !part.empty() && part.back() == 'x';
+    if (size.multiple) part.pop_back();
+    return parseReal(part, size.value);
+}
+
+}  // namespace
+
+bool readSheetSizes(const std::string& text, std::array<SizeValue, 2>& sizes) {
+    const std::vector<std::string> parts = splitAtCommas(text);
+    if (parts.size() != 2) return false;
+    for (std::size_t i = 0; i < 2; ++i)
+        if (!readSize(parts[i], sizes[i])) return false;
+    return true;
+}
+
 bool readSizes(const std::string& text, std::array<SizeValue, 3>& sizes) {
     const std::vector<std::string> parts = splitAtCommas(text);
     if (parts.size() != 3) return false;
-    for (std::size_t i = 0; i < 3; ++i) {
-        std::string part = parts[i];
-        sizes[i].multiple = !part.empty() && part.back() == 'x';
-        if (sizes[i].multiple) part.pop_back();
-        if (!parseReal(part, sizes[i].value)) return false;
-    }
+    for (std::size_t i = 0; i < 3; ++i)
+        if (!readSize(parts[i], sizes[i])) return false;
     return true;
 }
 

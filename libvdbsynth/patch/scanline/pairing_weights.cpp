@@ -128,8 +128,9 @@ PairingWeights nearMatchWeights(const PatchExemplar& exemplar, const std::vector
     const auto weight = [&](double sum, std::size_t count) {
         return count > 0 && sum > 0 ? std::min(1e6, unit * double(count) / sum) : 1.0;
     };
-    weight(terms.length, terms.coherent), weight(terms.direction, terms.coherent)
-};
+    // Terms here are halved as in eq. 2.
+    return {1, weight(terms.normal, terms.pairs), weight(terms.variation, terms.pairs),
+            weight(terms.length, terms.coherent), weight(terms.direction, terms.coherent)};
 }
 
 }  // namespace vdbsynth

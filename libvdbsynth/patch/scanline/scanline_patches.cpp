@@ -161,7 +161,7 @@ private:
     // Step 8, and the relaxation.
     void finish() {
         SheetPoints sheet;
-        const PlaneBox inside{0, 0, mSize.x, mSize.y};
+        const PlaneBox inside = PlaneBox{0, 0, mSize.x, mSize.y}.grown(std::min(mSize.z, mMargin));
         std::vector<ScanlinePoint> points = mSheet.all();
         if (mOptions.relax && !points.empty()) relax(points);
         for (const ScanlinePoint& point : points) {

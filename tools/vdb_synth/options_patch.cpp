@@ -1,0 +1,126 @@
+// Options of patch.
+#include "tools/vdb_synth/option_makers.h"
+#include "tools/vdb_synth/options.h"
+
+namespace vdbsynth::cli {
+namespace {
+
+const std::vector<std::string> kPatch{"patch"};
+
+std::vector<Option> sheetTable() {
+    return {
+        option(Kind::SheetSizes, "size", "X,Y")
+            .says(
+                "size of the sheet along its plane (world), or multiples of the exemplar's box such as 4x,4x")
+            .sets({"size", "width", "depth"})
+            .takenBy(kPatch),
+        choice("method", "NAME",
+               {{"default", "place, cut, warp along the cuts, blend"}, {"paper", "as published in 2006"}})
+            .in(Group::Method)
+            .says("how patches come together")
+            .initially("default")
+            .takenBy(kPatch),
+        worldLength("patch", "W")
+            .in(Group::Method)
+            .says("side of a patch")
+            .otherwiseIs("one and a half features of the exemplar")
+            .takenBy(kPatch),
+        real("overlap", "SHARE", 0.05, 0.8)
+            .in(Group::Method)
+            .says("how far a patch reaches over earlier ones, as a share of its side")
+            .otherwiseIs("0.25")
+            .takenBy(kPatch),
+        real("tolerance", "E", 0, 10)
+            .in(Group::Method)
+            .says("patches that fit within 1 + E times as well as the best are drawn from")
+            .initially("0.1")
+            .takenBy(kPatch),
+        real("field-step", "S", 0.5, 16)
+            .in(Group::Method)
+            .says("how far apart distances are measured that patches are compared by, in spacings of the "
+                  "points")
+            .initially("2")
+            .sets({"step"})
+            .takenBy(kPatch),
+        whole("repairs", "N", 0, 20)
+            .in(Group::Method)
+            .says("rounds in which patches are laid over the worst seams, of --method default")
+            .initially("2")
+            .takenBy(kPatch),
+        flag("tile")
+            .in(Group::Method)
+            .says("let the sheet continue at its opposite sides, of --method default")
+            .takenBy(kPatch),
+        flag("draft")
+            .in(Group::Method)
+            .says("a quick look: coarser comparison, no repairs, nothing warped or blended, of --method "
+                  "default")
+            .takenBy(kPatch),
+        choice("plane", "PLANE", {{"xy", ""}, {"yz", ""}, {"zx", ""}})
+            .in(Group::Input)
+            .says("plane along which the exemplar is a sheet")
+            .otherwiseIs("the file's own, else across its shortest side")
+            .takenBy(kPatch),
+        real("margin", "W", 0)
+            .in(Group::Input)
+            .measuredIn(Unit::World)
+            .says("how much of the exemplar at its sides only says how it goes on")
+            .otherwiseIs("what the file says, else a third of a patch")
+            .takenBy(kPatch),
+    };
+}
+
+std::vector<Option> paperTable() {
+    const auto weight = [](const char* name, const char* of) {
+        return real(name, "W", 0, 1e6)
+            .in(Group::Method)
+            .says(std::string("weight of ") + of +
+                  " in pairing, of --method paper; lengths count in spacings")
+            .otherwiseIs("from the exemplar's own near matches")
+            .takenBy(kPatch);
+    };
+    return {
+        weight("weight-normal", "normals"),
+        weight("weight-variation", "surface variation"),
+        weight("weight-length", "the pairs' length against their neighbours'"),
+        weight("weight-direction", "the pairs' direction against their neighbours'"),
+        real("limit-position", "L", 0.1, 100)
+            .in(Group::Method)
+            .says("longest pair, of --method paper, in spacings of the points")
+            .initially("6")
+            .takenBy(kPatch),
+        real("limit-normal", "DEGREES", 0, 180)
+            .in(Group::Method)
+            .says("greatest angle between the normals of a pair, of --method paper")
+            .initially("60")
+            .takenBy(kPatch),
+        real("limit-variation", "V", 0, 1)
+            .in(Group::Method)
+            .says("greatest difference of surface variation of a pair, of --method paper")
+            .initially("0.1")
+            .takenBy(kPatch),
+        whole("pairing-rounds", "N", 0, 20)
+            .in(Group::Method)
+            .says("times that points are paired again, of --method paper")
+            .initially("3")
+            .sets({"rounds"})
+            .takenBy(kPatch),
+        option(Kind::Triple, "seed-patch", "X,Y,Z")
+            .in(Group::Method)
+            .measuredIn(Unit::World)
+            .says("minimum corner of the first patch in the exemplar, of --method paper")
+            .otherwiseIs("drawn by --seed")
+            .sets({"seedPlace"})
+            .takenBy(kPatch),
+    };
+}
+
+}  // namespace
+
+std::vector<Option> patchOptionTable() {
+    std::vector<Option> table = sheetTable();
+    for (const Option& option : paperTable()) table.push_back(option);
+    return table;
+}
+
+}  // namespace vdbsynth::cli

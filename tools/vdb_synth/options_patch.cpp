@@ -61,6 +61,13 @@ std::vector<Option> sheetTable() {
             .says("plane along which the exemplar is a sheet")
             .otherwiseIs("the file's own, else across its shortest side")
             .takenBy(kPatch),
+        output("output", "FILE", {})
+            .shortly('o')
+            .says("file to write, its kind by extension: .ply points with normals; .vdb level set; .obj, "
+                  ".stl, .off, .glb, .gltf, "
+                  ".3mf mesh; .png, .exr heights")
+            .repeatable()
+            .takenBy(kPatch),
         real("margin", "W", 0)
             .in(Group::Input)
             .measuredIn(Unit::World)

@@ -31,15 +31,50 @@ void fillColumn(float* column, int nz, const std::vector<bool>& known) {
     }
 }
 
-void measureColumn(const PointSetSurface& surface, const Vec3d& lowest, double step, int nz, float* column) {
+// Nodes within reach of a point, and half a step: those worth a projection. Cubes of nodes about the points'
+// own, so a few are farther.
+std::vector<std::uint8_t> nearNodes(const std::vector<Vec3f>& points, const PatchLattice& l,
+                                    const Vec3d& origin, float reach) {
+    std::vector<std::uint8_t> near(l.nodes(), 0);
+    const int rings = int(std::ceil(double(reach)));
+    const auto low = [&](double x) { return std::max(0, int(std::floor(x / l.step)) - rings); };
+    const auto high = [&](double x, int count) {
+        return std::min(count - 1, int(std::floor(x / l.step)) + rings);
+    };
+    // Marked once for each node that holds points.
+    std::vector<std::uint8_t> done(l.nodes(), 0);
+    for (const Vec3f& point : points) {
+        const Vec3d at = cast<double>(point) - origin;
+        const int i0 = low(at.x), i1 = high(at.x, l.nx), j0 = low(at.y), j1 = high(at.y, l.ny),
+                  k0 = low(at.z), k1 = high(at.z, l.nz);
+        if (i0 > i1 || j0 > j1 || k0 > k1) continue;
+        const int i = int(std::floor(at.x / l.step)), j = int(std::floor(at.y / l.step)),
+                  k = int(std::floor(at.z / l.step));
+        if (i >= 0 && j >= 0 && k >= 0 && i < l.nx && j < l.ny && k < l.nz) {
+            std::uint8_t& own = done[l.column(i, j) * std::size_t(l.nz) + std::size_t(k)];
+            if (own) continue;
+            own = 1;
+        }
+        for (int x = i0; x <= i1; ++x)
+            for (int y = j0; y <= j1; ++y) {
+                std::uint8_t* column = near.data() + l.column(x, y) * std::size_t(l.nz);
+                std::fill(column + k0, column + k1 + 1, std::uint8_t(1));
+            }
+    }
+    return near;
+}
+
+void measureColumn(const PointSetSurface& surface, const Vec3d& lowest, double step, int nz, float reach,
+                   const std::uint8_t* near, float* column) {
     std::vector<bool> known(std::size_t(nz), false);
     for (int k = 0; k < nz; ++k) {
+        if (!near[k]) continue;
         const Vec3d place = lowest + Vec3d{0, 0, k * step};
         const auto foot = surface.project(place);
         if (!foot) continue;
         const Vec3d away = place - foot->point;
         const double distance = length(away) / step;
-        if (distance > 2.0 * kFieldReach) continue;
+        if (distance > 2.0 * double(reach)) continue;
         const bool inside = dot(away, foot->normal) < 0;
         const Vec3d gradient = distance > 1e-6 ? away * ((inside ? -1 : 1) / length(away)) : foot->normal;
         const float values[kFieldValues] = {std::min(float(distance), kFieldReach) * (inside ? -1.f : 1.f),
@@ -68,15 +103,19 @@ PatchLattice latticeOf(const Vec3d& size, double step) {
     return {step, sides[0], sides[1], sides[2]};
 }
 
-PatchField patchField(const PointSetSurface& surface, const PatchLattice& lattice, const Vec3d& origin,
-                      const RunContext& ctx) {
+PatchField patchField(const PointSetSurface& surface, const std::vector<Vec3f>& points,
+                      const PatchLattice& lattice, const Vec3d& origin, float reach, const RunContext& ctx) {
     PatchField field{lattice, std::vector<float>(lattice.nodes() * kFieldValues, 0.f)};
+    const std::vector<std::uint8_t> near = nearNodes(points, lattice, origin, reach);
     Stage stage(ctx, "distances of the exemplar", std::size_t(lattice.nx));
     for (int i = 0; i < lattice.nx; ++i) {
         parallelFor(ctx, std::size_t(lattice.ny), 4, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t j = begin; j < end; ++j)
-                measureColumn(surface, origin + lattice.place(i, int(j), 0), lattice.step, lattice.nz,
-                              field.values.data() + lattice.column(i, int(j)) * field.columnLength());
+            for (std::size_t j = begin; j < end; ++j) {
+                const std::size_t column = lattice.column(i, int(j));
+                measureColumn(surface, origin + lattice.place(i, int(j), 0), lattice.step, lattice.nz, reach,
+                              near.data() + column * std::size_t(lattice.nz),
+                              field.values.data() + column * field.columnLength());
+            }
         });
         stage.advance();
     }

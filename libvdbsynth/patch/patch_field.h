@@ -31,8 +31,8 @@ PatchLattice latticeOf(const Vec3d& size, double step);
 
 /// D(T) [duranleau2006, 5.1]: at every node the signed distance to a point-set surface, in steps, clamped to
 /// +-kFieldReach, and its gradient, the direction from the surface to the node outside and the reverse
-/// inside. Where no point is near, the distance is that limit, with the sign of the nearest node along the
-/// column that knows one, else outside, and the gradient 0.
+/// inside. Nodes farther from all points than `reach` have that limit, with the sign of the nearest node
+/// along the column that knows one, else outside, and the gradient 0.
 struct PatchField {
     PatchLattice lattice;
     std::vector<float> values;  ///< [columns x nz x 4]
@@ -42,11 +42,14 @@ struct PatchField {
     float distance(int i, int j, int k) const { return column(i, j)[k * kFieldValues]; }
 };
 
+/// @param points  that the surface is of
 /// @param origin  plane space, the lattice's minimum corner
+/// @param reach   [steps] above 0, at most kFieldReach
 /// @throw Error Cancelled
 /// @par Cost    one projection per node near a point
 /// @par Repeats same bits for any number of threads
-PatchField patchField(const PointSetSurface& surface, const PatchLattice& lattice, const Vec3d& origin,
+PatchField patchField(const PointSetSurface& surface, const std::vector<Vec3f>& points,
+                      const PatchLattice& lattice, const Vec3d& origin, float reach = kFieldReach,
                       const RunContext& ctx = {});
 
 }  // namespace vdbsynth

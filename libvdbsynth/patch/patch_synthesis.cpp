@@ -185,7 +185,8 @@ PatchResult synthesizePatches(const PatchExemplar& exemplar, const PatchOptions&
     const PointSetSurface surface =
         surfaceOf(exemplar, paper ? PointSetKind::AdamsonAlexa : PointSetKind::Apss, ctx);
     const PatchField field =
-        patchField(surface, latticeOf(exemplar.size, options.step * exemplar.spacing), {}, ctx);
+        patchField(surface, exemplar.points, latticeOf(exemplar.size, options.step * exemplar.spacing), {},
+                   kFieldReach, ctx);
     const PatchSides sides = sidesOf(field, options, ctx);
     const double prepared = secondsSince(begin);
     PatchResult result = paper ? byPaper(exemplar, field, sides, options, ctx)
@@ -201,7 +202,8 @@ SheetResult repeatPatches(const PatchExemplar& exemplar, const PatchArrangement&
                           const PatchOptions& options, const RunContext& ctx) {
     validate(options);
     const PointSetSurface surface = surfaceOf(exemplar, PointSetKind::Apss, ctx);
-    const PatchField field = patchField(surface, latticeOf(exemplar.size, arrangement.lattice.step), {}, ctx);
+    const PatchField field = patchField(
+        surface, exemplar.points, latticeOf(exemplar.size, arrangement.lattice.step), {}, kFieldReach, ctx);
     int overlap = 1;
     for (const LaidPatch& patch : arrangement.patches) {
         if (patch.from.i < 0 || patch.from.j < 0 || patch.from.i + patch.nx > field.lattice.nx ||

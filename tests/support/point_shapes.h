@@ -48,4 +48,42 @@ inline PointShape spiralSphere(std::size_t count, double radius) {
     return shape;
 }
 
+/// A torus about the z axis, a point to each unit of area: rings of even points about its tube.
+inline PointShape ringTorus(double radius, double tube) {
+    PointShape shape;
+    const int rings = int(2 * kPi * tube);
+    for (int j = 0; j < rings; ++j) {
+        const double b = 2 * kPi * j / rings, across = radius + tube * cosine(b);
+        const int count = int(2 * kPi * across);
+        for (int i = 0; i < count; ++i) {
+            const double a = 2 * kPi * (i + 0.5 * (j & 1)) / count;
+            const Vec3d n{cosine(a) * cosine(b), sine(a) * cosine(b), sine(b)};
+            shape.point.push_back(cast<float>(Vec3d{radius * cosine(a), radius * sine(a), 0} + n * tube));
+            shape.normal.push_back(cast<float>(n));
+        }
+    }
+    return shape;
+}
+
+/// The two sides of the edge along y of the solid x < 0, z < 0: lattices a unit apart, half a unit from the
+/// edge.
+inline PointShape latticeWedge(int side) {
+    PointShape shape;
+    for (int i = 0; i < side; ++i)
+        for (int j = 0; j < 2 * side; ++j) {
+            shape.point.push_back({-float(i) - 0.5f, float(j) + 0.5f, 0});
+            shape.normal.push_back({0, 0, 1});
+            shape.point.push_back({0, float(j) + 0.5f, -float(i) - 0.5f});
+            shape.normal.push_back({1, 0, 0});
+        }
+    return shape;
+}
+
+/// Both as one.
+inline PointShape joined(PointShape a, const PointShape& b) {
+    a.point.insert(a.point.end(), b.point.begin(), b.point.end());
+    a.normal.insert(a.normal.end(), b.normal.begin(), b.normal.end());
+    return a;
+}
+
 }  // namespace vdbsynth::test

@@ -73,7 +73,7 @@ private:
             const Timer timer(mResult.seconds.search);
             neighbours = mSheet.gathered(patch.box().grown(mMargin));
             surface = surfaceOf(neighbours);
-            place = placeFor(patch, surface);
+            place = placeFor(patch, neighbours, surface);
         }
         std::vector<ScanlinePoint> points = pointsAt(place, patch);
         if (surface) {
@@ -108,7 +108,8 @@ private:
     }
 
     // Step 2 and the choice of step 3.
-    PatchPlace placeFor(const ScanlinePatch& patch, const std::optional<PointSetSurface>& surface) const {
+    PatchPlace placeFor(const ScanlinePatch& patch, const std::vector<ScanlinePoint>& neighbours,
+                        const std::optional<PointSetSurface>& surface) const {
         const int side = mOptions.patch;
         Random random(mContext.seed, mResult.patches, kChoice);
         if (!surface) {
@@ -116,19 +117,23 @@ private:
             const int i = int(random.below(std::uint32_t(mField.lattice.nx - side + 1)));
             return {i, int(random.below(std::uint32_t(mField.lattice.ny - side + 1)))};
         }
-        const PatchOverlap overlap = measured(patch, *surface);
+        const PatchOverlap overlap = measured(patch, neighbours, *surface);
         const auto candidates = patchCandidates(mField, overlap, {mOptions.tolerance, {}, 0}, mContext);
         return candidates[random.below(std::uint32_t(candidates.size()))].place;
     }
 
     // D(O_k) of what lies there.
-    PatchOverlap measured(const ScanlinePatch& patch, const PointSetSurface& surface) const {
+    PatchOverlap measured(const ScanlinePatch& patch, const std::vector<ScanlinePoint>& neighbours,
+                          const PointSetSurface& surface) const {
+        std::vector<Vec3f> points;
+        for (const ScanlinePoint& neighbour : neighbours) points.push_back(neighbour.point);
         const PatchLattice lattice{mStep, mOptions.patch, mOptions.patch, mField.lattice.nz};
         PatchOverlap overlap;
         overlap.nx = overlap.ny = mOptions.patch;
         const auto add = [&](int i0, int j0, int nx, int ny) {
-            const PatchField part = patchField(surface, {mStep, nx, ny, lattice.nz},
-                                               Vec3d{patch.x + i0 * mStep, patch.y + j0 * mStep, 0}, quiet());
+            const PatchField part =
+                patchField(surface, points, {mStep, nx, ny, lattice.nz},
+                           Vec3d{patch.x + i0 * mStep, patch.y + j0 * mStep, 0}, kFieldReach, quiet());
             for (int i = 0; i < nx; ++i)
                 for (int j = 0; j < ny; ++j) overlap.columns.push_back({i0 + i, j0 + j});
             overlap.values.insert(overlap.values.end(), part.values.begin(), part.values.end());

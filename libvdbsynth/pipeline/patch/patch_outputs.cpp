@@ -13,6 +13,7 @@ namespace vdbsynth {
 namespace {
 
 constexpr int kTile = 64;   // voxels along the plane that are measured at once
+constexpr float kNear = 2;  // voxels from the points that are measured: only the zero level is meant
 constexpr int kBeyond = 4;  // voxels beyond the domain
 
 bool insideSheet(const Vec3f& at, const PatchSheet& sheet) {
@@ -28,19 +29,23 @@ Attribute wholeNumbers(const std::string& name) {
 // Voxels in the order of the file's axes from columns in that of the plane's.
 class VoxelWriter {
 public:
-    VoxelWriter(PatchPlane plane, const IndexBox& box) : mPlane(plane), mField(box, kFieldReach) {}
+    VoxelWriter(PatchPlane plane, const Index3& first, const Index3& last)
+        : mPlane(plane), mField({turned(first), turned(last)}, kFieldReach) {}
 
     // A tile of columns that begins at a place of plane space's voxels.
     void write(const PatchField& part, const Index3& first) {
         const PatchLattice& l = part.lattice;
+        const Index3 size = turned({l.nx, l.ny, l.nz});
+        std::vector<float> values(l.nodes());
         for (int i = 0; i < l.nx; ++i)
             for (int j = 0; j < l.ny; ++j)
-                for (int k = 0; k < l.nz; ++k) {
-                    const Vec3d at =
-                        fromPlane(mPlane, {double(first.x + i), double(first.y + j), double(first.z + k)});
-                    const float value = part.distance(i, j, k);
-                    mField.writeBox({int(at.x), int(at.y), int(at.z)}, {1, 1, 1}, &value);
-                }
+                for (int k = 0; k < l.nz; ++k)
+                    values[latticeIndex(turned({i, j, k}), size)] = part.distance(i, j, k);
+        mField.writeBox(turned(first), size, values.data());
+    }
+    Index3 turned(const Index3& p) const {
+        const Vec3d at = fromPlane(mPlane, {double(p.x), double(p.y), double(p.z)});
+        return {int(at.x), int(at.y), int(at.z)};
     }
     BrickField take() { return std::move(mField); }
 
@@ -49,10 +54,73 @@ private:
     BrickField mField;
 };
 
-// In plane space's voxels: index = place / voxelSize.
+// The domain in plane space's voxels, inclusive: index = place / voxelSize.
 struct SheetVoxels {
-    Index3 low, high;  // of the domain, inclusive
+    Index3 low, high;
 };
+
+SheetVoxels voxelsOf(const PatchSheet& sheet, const Vec3d& corner, double height, double voxelSize) {
+    const Vec3d size{sheet.width, sheet.depth, height};
+    SheetVoxels voxels;
+    for (int axis = 0; axis < 3; ++axis) {
+        voxels.low[axis] = int(std::lround(corner[axis] / voxelSize));
+        voxels.high[axis] =
+            std::max(voxels.low[axis], int(std::lround((corner[axis] + size[axis]) / voxelSize)) - 1);
+    }
+    return voxels;
+}
+
+// The sheet's points by the tiles that they may be near to.
+class PointTiles {
+public:
+    PointTiles(const std::vector<Vec3f>& points, const Vec3d& origin, double side, double reach, int nx,
+               int ny)
+        : mNy(ny), mTiles(std::size_t(nx) * std::size_t(ny)) {
+        const auto at = [&](double x, int count) {
+            return std::clamp(int(std::floor(x / side)), 0, count - 1);
+        };
+        for (const Vec3f& point : points) {
+            const double x = double(point.x) - origin.x, y = double(point.y) - origin.y;
+            for (int i = at(x - reach, nx); i <= at(x + reach, nx); ++i)
+                for (int j = at(y - reach, ny); j <= at(y + reach, ny); ++j)
+                    mTiles[std::size_t(i) * std::size_t(ny) + std::size_t(j)].push_back(point);
+        }
+    }
+    const std::vector<Vec3f>& at(int i, int j) const {
+        return mTiles[std::size_t(i) * std::size_t(mNy) + std::size_t(j)];
+    }
+
+private:
+    int mNy;
+    std::vector<std::vector<Vec3f>> mTiles;
+};
+
+// Distances over the voxels from `first` to `last` of plane space.
+BrickField sheetField(const PatchSheet& sheet, const VoxelWriter& like, const Vec3d& corner, double voxelSize,
+                      const Index3& first, const Index3& last, const RunContext& ctx) {
+    VoxelWriter writer = like;
+    const std::vector<Vec3f>& points = sheet.result.sheet.points;
+    const PointSetSurface surface(points, sheet.result.sheet.normals, {}, ctx);
+    const int nx = (last.x - first.x) / kTile + 1, ny = (last.y - first.y) / kTile + 1;
+    // A lattice's node is half a step from its corner; a voxel's value is that at its index.
+    const auto originOf = [&](int x, int y) {
+        return Vec3d{x - 0.5, y - 0.5, first.z - 0.5} * voxelSize - corner;
+    };
+    const PointTiles tiles(points, originOf(first.x, first.y), kTile * voxelSize, 4 * voxelSize, nx, ny);
+    RunContext quiet = ctx;
+    quiet.onProgress = nullptr;
+    Stage stage(ctx, "distances of the sheet", std::size_t(nx) * std::size_t(ny));
+    for (int i = 0; i < nx; ++i)
+        for (int j = 0; j < ny; ++j) {
+            const int x = first.x + i * kTile, y = first.y + j * kTile;
+            const PatchLattice part{voxelSize, std::min(kTile, last.x - x + 1),
+                                    std::min(kTile, last.y - y + 1), last.z - first.z + 1};
+            writer.write(patchField(surface, tiles.at(i, j), part, originOf(x, y), kNear, quiet),
+                         {x, y, first.z});
+            stage.advance();
+        }
+    return writer.take();
+}
 
 }  // namespace
 
@@ -91,42 +159,16 @@ LevelSet sheetLevelSet(const PatchSource& source, const PatchSheet& sheet, doubl
                        const RunContext& ctx) {
     const PatchExemplar& exemplar = source.exemplar;
     const Vec3d corner = toPlane(exemplar.plane, exemplar.corner);
-    const Vec3d size{sheet.width, sheet.depth, exemplar.size.z};
-    SheetVoxels voxels;
-    for (int axis = 0; axis < 3; ++axis) {
-        voxels.low[axis] = int(std::lround(corner[axis] / voxelSize));
-        voxels.high[axis] =
-            std::max(voxels.low[axis], int(std::lround((corner[axis] + size[axis]) / voxelSize)) - 1);
-    }
-    requireMemory(ctx,
-                  8.0 * double(voxels.high.x - voxels.low.x) * double(voxels.high.y - voxels.low.y) *
-                      double(voxels.high.z - voxels.low.z),
-                  "a level set of the sheet", "a larger `voxelSize` needs less");
-    const PointSetSurface surface(sheet.result.sheet.points, sheet.result.sheet.normals, {}, ctx);
-    const auto turned = [&](const Index3& p) {
-        const Vec3d at = fromPlane(exemplar.plane, {double(p.x), double(p.y), double(p.z)});
-        return Index3{int(at.x), int(at.y), int(at.z)};
-    };
+    const SheetVoxels voxels = voxelsOf(sheet, corner, exemplar.size.z, voxelSize);
     const Index3 beyond{kBeyond, kBeyond, kBeyond};
-    const Index3 first = voxels.low - beyond, last = voxels.high + beyond;
-    VoxelWriter writer(exemplar.plane, {turned(first), turned(last)});
-    RunContext quiet = ctx;
-    quiet.onProgress = nullptr;
-    const int tiles = (last.x - first.x) / kTile + 1;
-    Stage stage(ctx, "distances of the sheet", std::size_t(tiles));
-    for (int x = first.x; x <= last.x; x += kTile) {
-        for (int y = first.y; y <= last.y; y += kTile) {
-            const PatchLattice part{voxelSize, std::min(kTile, last.x - x + 1),
-                                    std::min(kTile, last.y - y + 1), last.z - first.z + 1};
-            // A lattice's node is half a step from its corner; a voxel's value is that at its index.
-            const Vec3d origin = Vec3d{x - 0.5, y - 0.5, first.z - 0.5} * voxelSize - corner;
-            writer.write(patchField(surface, part, origin, quiet), {x, y, first.z});
-        }
-        stage.advance();
-    }
+    const Index3 first = voxels.low - beyond, last = voxels.high + beyond, count = last - first;
+    requireMemory(ctx, 5.0 * double(count.x) * double(count.y) * double(count.z), "a level set of the sheet",
+                  "a larger `voxelSize` needs less");
+    const VoxelWriter writer(exemplar.plane, first, last);
     const LevelSet made =
-        modelFromField(writer.take(), kFieldReach, false, {turned(voxels.low), turned(voxels.high)},
-                       voxelSize, "the sheet", "a larger `size` may hold more", ctx);
+        modelFromField(sheetField(sheet, writer, corner, voxelSize, first, last, ctx), kFieldReach, false,
+                       {writer.turned(voxels.low), writer.turned(voxels.high)}, voxelSize, "the sheet",
+                       "a larger `size` may hold more", ctx);
     return withHalfWidth(made, halfWidth, ctx);
 }
 

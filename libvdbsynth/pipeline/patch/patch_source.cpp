@@ -19,7 +19,9 @@ namespace vdbsynth {
 namespace {
 
 constexpr std::size_t kFewest = 32;
-constexpr double kKernels = 7;      // [spacings] that fields near the box's sides read beyond it
+constexpr double kKernels = 7;  // [spacings] that fields near the box's sides read beyond it
+constexpr double kModelSpacing =
+    0.5;                            // [voxels] of points on a level set: thin parts need several around them
 constexpr double kCapCosine = 0.7;  // of a cap's normal to its side's
 
 // What a file gives before the texture's box is known.
@@ -92,7 +94,7 @@ bool isCap(const Vec3f& point, const Vec3f& normal, const PatchBox& box, double 
 
 Content fromModel(const std::string& path, const PatchSourceOptions& options, const RunContext& ctx) {
     const LevelSet model = loadModel(path, options.model, ctx);
-    PointCloud cloud = levelSetToPoints(*model.grid, {}, ctx);
+    PointCloud cloud = levelSetToPoints(*model.grid, {kModelSpacing}, ctx);
     Content content;
     content.points = std::move(cloud.points);
     content.normals = std::move(cloud.normals);
@@ -131,7 +133,8 @@ double marginOf(const Content& content, PatchPlane plane, double spacing, const 
     const PatchExemplar whole = patchExemplar(content.points, content.normals,
                                               lessMargin(content.bounds, plane, least), plane, spacing);
     const PointSetSurface surface(whole.points, whole.normals, {}, ctx);
-    const PatchField field = patchField(surface, latticeOf(whole.size, 2 * spacing), {}, ctx);
+    const PatchField field =
+        patchField(surface, whole.points, latticeOf(whole.size, 2 * spacing), {}, kFieldReach, ctx);
     return std::max(least, patchSide(field, patchFeature(field, ctx)) * field.lattice.step / 3);
 }
 

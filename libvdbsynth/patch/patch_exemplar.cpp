@@ -1,6 +1,8 @@
 #include "libvdbsynth/patch/patch_exemplar.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/geometry/point_neighbours.h"
 
 #include <algorithm>
 #include <limits>
@@ -62,6 +64,30 @@ PatchExemplar patchExemplar(const std::vector<Vec3f>& points, const std::vector<
         exemplar.number.push_back(std::uint32_t(i));
     }
     return exemplar;
+}
+
+double fittingKernel(const std::vector<Vec3f>& points, const std::vector<Vec3f>& normals, double spacing,
+                     const RunContext& ctx) {
+    constexpr std::size_t kNearest = 48, kLooked = 20000;
+    constexpr double kThin = 6, kOpposite = -0.5, kShare = 0.05;
+    const PointNeighbours neighbours(points);
+    const std::size_t stride = std::max<std::size_t>(1, points.size() / kLooked),
+                      looked = points.size() / stride;
+    std::vector<std::uint8_t> thin(looked, 0);
+    parallelFor(ctx, looked, 64, [&](std::size_t begin, std::size_t end) {
+        std::uint32_t numbers[kNearest];
+        float squared[kNearest];
+        for (std::size_t n = begin; n < end; ++n) {
+            const std::size_t point = n * stride;
+            const std::size_t found = neighbours.nearest(points[point], kNearest, numbers, squared);
+            for (std::size_t f = 0; f < found; ++f)
+                if (double(squared[f]) < kThin * kThin * spacing * spacing &&
+                    double(dot(normals[numbers[f]], normals[point])) < kOpposite)
+                    thin[n] = 1;
+        }
+    });
+    const auto count = std::count(thin.begin(), thin.end(), std::uint8_t(1));
+    return double(count) > kShare * double(looked) ? 1 : 2;
 }
 
 }  // namespace vdbsynth

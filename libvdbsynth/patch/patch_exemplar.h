@@ -25,6 +25,7 @@ struct PatchExemplar {
     std::vector<std::uint32_t> number;  ///< [points] of the cloud that it was made from
     Vec3d size;                         ///< [world] of the box
     double spacing = 0;                 ///< [world] median of the points' distances to their neighbours
+    double kernel = 2;  ///< [spacings] 1..8, of its points' surface (points/point_set_surface.h)
     PatchPlane plane = PatchPlane::XY;
     Vec3d corner;  ///< [world] the box's minimum corner, axes as in the file
 
@@ -45,5 +46,11 @@ struct PatchBox {
 /// @par Cost    O(points)   @par Repeats yes
 PatchExemplar patchExemplar(const std::vector<Vec3f>& points, const std::vector<Vec3f>& normals,
                             const PatchBox& box, PatchPlane plane, double spacing);
+
+/// The kernel that suits points: 2, or 1 where over a twentieth of them lie on thin parts, with a point that
+/// faces the other way among their 48 nearest and within 6 spacings: wide kernels mix both sides there.
+/// @par Cost    O(points log points)   @par Repeats same bits for any number of threads
+double fittingKernel(const std::vector<Vec3f>& points, const std::vector<Vec3f>& normals, double spacing,
+                     const RunContext& ctx = {});
 
 }  // namespace vdbsynth

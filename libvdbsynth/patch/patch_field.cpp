@@ -14,20 +14,21 @@ namespace {
 
 constexpr double kMostNodes = 2147483648.0;
 
-// The nodes that no point is near take the side of the nearest known one of their column, the lower of two.
+// The nodes that no point is near are inside only under a node that is, down to another one or to the bottom: a
+// solid has a top. So a tube that ends open is not drawn out upward.
 void fillColumn(float* column, int nz, const std::vector<bool>& known) {
-    int below = -1;
-    for (int k = 0; k < nz; ++k) {
+    const auto inside = [&](int k) { return column[k * kFieldValues] < 0; };
+    int above = nz;  // the nearest known node upward, nz: none
+    for (int k = nz - 1; k >= 0; --k) {
         if (known[std::size_t(k)]) {
-            below = k;
+            above = k;
             continue;
         }
-        int above = k + 1;
-        while (above < nz && !known[std::size_t(above)]) ++above;
-        const bool fromBelow = below >= 0 && (above >= nz || k - below <= above - k);
-        const int from = fromBelow ? below : above < nz ? above : -1;
-        const float side = from >= 0 ? column[from * kFieldValues] : 1.f;
-        column[k * kFieldValues] = side < 0 ? -kFieldReach : kFieldReach;
+        int below = k - 1;
+        while (below >= 0 && !known[std::size_t(below)]) --below;
+        const bool solid = above < nz && inside(above) && (below < 0 || inside(below));
+        for (; k > below; --k) column[k * kFieldValues] = solid ? -kFieldReach : kFieldReach;
+        ++k;
     }
 }
 

@@ -27,6 +27,7 @@ double secondsSince(std::chrono::steady_clock::time_point begin) {
 PointSetSurface surfaceOf(const PatchExemplar& exemplar, PointSetKind kind, const RunContext& ctx) {
     PointSetSurfaceOptions options;
     options.kind = kind;
+    options.kernel = exemplar.kernel;
     return PointSetSurface(exemplar.points, exemplar.normals, options, ctx);
 }
 
@@ -168,13 +169,19 @@ void validate(const PatchOptions& options) {
     require(options.overlap == 0 || (options.overlap >= 0.05 && options.overlap <= 0.8),
             "`overlap` must be 0.05..0.8");
     require(options.tolerance >= 0 && options.tolerance <= 10, "`tolerance` must be 0..10");
-    require(options.step >= 0.5 && options.step <= 16, "`step` must be 0.5..16");
+    require(options.step == 0 || (options.step >= 0.5 && options.step <= 64), "`step` must be 0.5..64");
     require(options.repairs >= 0 && options.repairs <= 20, "`repairs` must be 0..20");
     PairingOptions pairing;
     if (options.weights) pairing.weights = *options.weights;
     pairing.limits = options.limits;
     pairing.rounds = options.rounds;
     validate(pairing);
+}
+
+double fieldStep(const PatchExemplar& exemplar, const PatchOptions& options) {
+    constexpr double kLeast = 2, kMostColumns = 72;
+    if (options.step > 0) return options.step * exemplar.spacing;
+    return std::max(kLeast * exemplar.spacing, std::max(exemplar.size.x, exemplar.size.y) / kMostColumns);
 }
 
 PatchResult synthesizePatches(const PatchExemplar& exemplar, const PatchOptions& options,
@@ -185,7 +192,7 @@ PatchResult synthesizePatches(const PatchExemplar& exemplar, const PatchOptions&
     const PointSetSurface surface =
         surfaceOf(exemplar, paper ? PointSetKind::AdamsonAlexa : PointSetKind::Apss, ctx);
     const PatchField field =
-        patchField(surface, exemplar.points, latticeOf(exemplar.size, options.step * exemplar.spacing), {},
+        patchField(surface, exemplar.points, latticeOf(exemplar.size, fieldStep(exemplar, options)), {},
                    kFieldReach, ctx);
     const PatchSides sides = sidesOf(field, options, ctx);
     const double prepared = secondsSince(begin);

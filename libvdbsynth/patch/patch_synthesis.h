@@ -19,7 +19,7 @@ struct PatchOptions {
     double patch = 0;             ///< [world] side of a patch; 0: one and a half features (patch_size.h)
     double overlap = 0;           ///< 0.05..0.8 of a patch over earlier ones; 0: a quarter
     double tolerance = 0.1;       ///< 0..10, e: candidates within (1 + e) of the best are drawn from
-    double step = 2;              ///< [spacings] 0.5..16, of the field that patches are compared by
+    double step = 0;  ///< [spacings] 0.5..64, of the field that patches are compared by; 0: see fieldStep
 
     // Of the default method.
     bool tile = false;  ///< the sheet continues at its opposite sides
@@ -37,6 +37,10 @@ struct PatchOptions {
 
 /// @throw Error InvalidOption (a field out of its range)
 void validate(const PatchOptions& options);
+
+/// [world] The step of the field that patches of an exemplar are compared by: as `step` says, else 2
+/// spacings, or more where its box has over 72 of these along its longer side; the paper's have 51 to 84.
+double fieldStep(const PatchExemplar& exemplar, const PatchOptions& options);
 
 struct PatchResult {
     SheetPoints sheet;  ///< plane space; the sheet is [0, width) x [0, depth), its border around it

@@ -13,7 +13,7 @@
 namespace vdbsynth::cli {
 namespace {
 
-constexpr double kDraftStep = 4;  // [spacings]
+constexpr double kDraftStep = 2;  // times the usual step
 
 void refuseOtherMethod(const Arguments& arguments) {
     const std::string method = arguments.text("method");
@@ -62,7 +62,6 @@ PatchOptions parseOptions(const Arguments& arguments) {
         options.seedPlace = Vec3d{place[0], place[1], place[2]};
     }
     if (arguments.has("draft")) {
-        if (!arguments.has("field-step")) options.step = kDraftStep;
         if (!arguments.has("repairs")) options.repairs = 0;
         options.warp = options.blend = false;
     }
@@ -164,6 +163,8 @@ void patch(Run& run) {
     const PatchSource source = loadPatchSource(arguments.inputs[0], sourceOptions, run.context);
     run.noteInput(arguments.inputs[0]);
     setSize(arguments, source.exemplar, options);
+    if (arguments.has("draft") && !arguments.has("field-step"))
+        options.step = kDraftStep * fieldStep(source.exemplar, options) / source.exemplar.spacing;
     const PatchSheet sheet = makePatchSheet(source, options, run.context);
     writeAll(run, source, sheet);
     report(run, source, sheet);

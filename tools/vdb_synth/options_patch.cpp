@@ -35,11 +35,11 @@ std::vector<Option> sheetTable() {
             .says("patches that fit within 1 + E times as well as the best are drawn from")
             .initially("0.1")
             .takenBy(kPatch),
-        real("field-step", "S", 0.5, 16)
+        real("field-step", "S", 0.5, 64)
             .in(Group::Method)
             .says("how far apart distances are measured that patches are compared by, in spacings of the "
                   "points")
-            .initially("2")
+            .otherwiseIs("2, or more where the exemplar is over 72 steps wide")
             .sets({"step"})
             .takenBy(kPatch),
         whole("repairs", "N", 0, 20)

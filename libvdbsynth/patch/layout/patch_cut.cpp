@@ -61,7 +61,7 @@ private:
         for (int i = 0; i < mNx; ++i)
             for (int j = 0; j < mNy; ++j) {
                 const std::ptrdiff_t column = sheetColumn(i, j);
-                if (column < 0 || !mArrangement.known(column)) continue;
+                if (column < 0 || !mArrangement.known(column) || inCore(i, j)) continue;
                 mFirstNode[std::size_t(i) * std::size_t(mNy) + std::size_t(j)] =
                     std::uint32_t(mMismatch.size());
                 readColumn(mExemplar, mArrangement, mPatch.at.i + i, mPatch.at.j + j, old.data());
@@ -82,14 +82,14 @@ private:
     // yes: the node goes to the new patch.
     void addColumn(int i, int j, CutProblem& problem) const {
         const std::uint32_t first = firstNode(i, j);
-        bool besideNew = inCore(i, j), besideOld = false;
-        for (const auto [di, dj] : {std::pair{1, 0}, {0, 1}, {-1, 0}, {0, -1}}) {
+        bool besideNew = false, besideOld = false;
+        for (const auto& [di, dj] : {std::pair{1, 0}, {0, 1}, {-1, 0}, {0, -1}}) {
             const std::ptrdiff_t column = sheetColumn(i + di, j + dj);
             if (column < 0) continue;
             const bool known = mArrangement.known(column), inside = inPatch(i + di, j + dj);
             besideOld = besideOld || (known && !inside);
-            besideNew = besideNew || (!known && inside);
-            if (known && inside && (di > 0 || dj > 0))
+            besideNew = besideNew || (inside && (!known || inCore(i + di, j + dj)));
+            if (known && inside && !inCore(i + di, j + dj) && (di > 0 || dj > 0))
                 for (int k = 0; k < mNz; ++k)
                     join(first + std::uint32_t(k), firstNode(i + di, j + dj) + std::uint32_t(k), problem);
         }

@@ -26,7 +26,8 @@ bool PatchLayer::tryRepair(const PatchPlace& at) {
             before.insert(before.end(), labels, labels + nz);
         }
     const double old = seams();
-    lay(at, side, side, mOptions.overlap, std::max(0, side / 2 - mOptions.overlap - 1));
+    // Of the middle, which is not compared, everything is replaced.
+    lay(at, side, side, mOptions.overlap, std::max(0, (side - 1) / 2 - mOptions.overlap));
     if (seams() < old) return true;
     mArrangement.patches.pop_back();
     auto from = before.begin();

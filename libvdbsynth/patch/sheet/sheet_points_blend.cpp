@@ -82,7 +82,9 @@ void blendBorders(const SheetSource& source, SheetPoints& sheet, const RunContex
         if (ring < kBlendRings) moving.push_back(std::uint32_t(p));
     }
     if (moving.empty()) return;
-    const PointSetSurface surface(std::move(points), std::move(normals), {}, ctx);
+    PointSetSurfaceOptions options;
+    options.kernel = source.exemplar.kernel;
+    const PointSetSurface surface(std::move(points), std::move(normals), options, ctx);
     std::vector<Vec3f> moved(moving.size()), turned(moving.size());
     Stage stage(ctx, "blending borders", 1);
     parallelFor(ctx, moving.size(), 256, [&](std::size_t begin, std::size_t end) {

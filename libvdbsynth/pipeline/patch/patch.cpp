@@ -22,7 +22,7 @@ PatchSheet makePatchSheet(const PatchSource& source, const PatchOptions& given, 
     PatchOptions options = given;
     options.border = kBorder * source.exemplar.spacing;
     if (options.tile) {
-        const double step = options.step * source.exemplar.spacing;
+        const double step = fieldStep(source.exemplar, options);
         options.width = wholeSteps(given.width, step);
         options.depth = wholeSteps(given.depth, step);
         if (std::abs(options.width - given.width) > 1e-6 * step ||

@@ -96,11 +96,13 @@ private:
 };
 
 // Distances over the voxels from `first` to `last` of plane space.
-BrickField sheetField(const PatchSheet& sheet, const VoxelWriter& like, const Vec3d& corner, double voxelSize,
-                      const Index3& first, const Index3& last, const RunContext& ctx) {
+BrickField sheetField(const PatchSheet& sheet, double kernel, const VoxelWriter& like, const Vec3d& corner,
+                      double voxelSize, const Index3& first, const Index3& last, const RunContext& ctx) {
     VoxelWriter writer = like;
     const std::vector<Vec3f>& points = sheet.result.sheet.points;
-    const PointSetSurface surface(points, sheet.result.sheet.normals, {}, ctx);
+    PointSetSurfaceOptions options;
+    options.kernel = kernel;
+    const PointSetSurface surface(points, sheet.result.sheet.normals, options, ctx);
     const int nx = (last.x - first.x) / kTile + 1, ny = (last.y - first.y) / kTile + 1;
     // A lattice's node is half a step from its corner; a voxel's value is that at its index.
     const auto originOf = [&](int x, int y) {
@@ -166,9 +168,9 @@ LevelSet sheetLevelSet(const PatchSource& source, const PatchSheet& sheet, doubl
                   "a larger `voxelSize` needs less");
     const VoxelWriter writer(exemplar.plane, first, last);
     const LevelSet made =
-        modelFromField(sheetField(sheet, writer, corner, voxelSize, first, last, ctx), kFieldReach, false,
-                       {writer.turned(voxels.low), writer.turned(voxels.high)}, voxelSize, "the sheet",
-                       "a larger `size` may hold more", ctx);
+        modelFromField(sheetField(sheet, exemplar.kernel, writer, corner, voxelSize, first, last, ctx),
+                       kFieldReach, false, {writer.turned(voxels.low), writer.turned(voxels.high)}, voxelSize,
+                       "the sheet", "a larger `size` may hold more", ctx);
     return withHalfWidth(made, halfWidth, ctx);
 }
 

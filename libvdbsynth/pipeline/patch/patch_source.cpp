@@ -5,6 +5,7 @@
 #include "libvdbsynth/io/point_file.h"
 #include "libvdbsynth/io/texture_box.h"
 #include "libvdbsynth/patch/patch_size.h"
+#include "libvdbsynth/patch/patch_synthesis.h"
 #include "libvdbsynth/points/point_set_surface.h"
 #include "libvdbsynth/vdb/convert/level_set_to_points.h"
 
@@ -133,8 +134,9 @@ double marginOf(const Content& content, PatchPlane plane, double spacing, const 
     const PatchExemplar whole = patchExemplar(content.points, content.normals,
                                               lessMargin(content.bounds, plane, least), plane, spacing);
     const PointSetSurface surface(whole.points, whole.normals, {}, ctx);
+    const double step = fieldStep(whole, {});
     const PatchField field =
-        patchField(surface, whole.points, latticeOf(whole.size, 2 * spacing), {}, kFieldReach, ctx);
+        patchField(surface, whole.points, latticeOf(whole.size, step), {}, kFieldReach, ctx);
     return std::max(least, patchSide(field, patchFeature(field, ctx)) * field.lattice.step / 3);
 }
 
@@ -197,6 +199,7 @@ PatchSource loadPatchSource(const std::string& path, const PatchSourceOptions& o
                     " (world) are taken, `margin` says another");
     }
     source.exemplar = patchExemplar(content.points, content.normals, box, plane, spacing);
+    source.exemplar.kernel = fittingKernel(source.exemplar.points, source.exemplar.normals, spacing, ctx);
     source.exemplar.corner = source.exemplar.corner + content.origin;
     source.attributes = std::move(content.attributes);
     source.voxelSize = content.voxelSize > 0 ? content.voxelSize : spacing;

@@ -31,7 +31,8 @@ struct PatchSource {
 /// Any supported geometry as a texture of oriented points.
 /// - Points: as they are. Without normals these are estimated, with a note. The box is that of the file's
 ///   header (io/texture_box.h), else their bounds less the margin.
-/// - Everything else becomes a level set, and that points half a voxel apart. Points on the caps at its domain's
+/// - Everything else becomes a level set, and that points half a voxel apart. Points on the caps at its
+/// domain's
 ///   sides (the cuts through the texture) are left out; the box is the domain less the margin.
 /// What is guessed is a note.
 /// @throw Error as loadModel and readPoints; EmptyInput (fewer than 32 points, none in the box), Unusable (a

@@ -47,4 +47,29 @@ PrincipalAxes principalAxes(const std::vector<float>& vectors, std::size_t lengt
     return result;
 }
 
+PointAxes pointAxes(const PointSums& sums, bool aboutMean) {
+    PointAxes axes;
+    if (sums.count == 0) {
+        for (int k = 0; k < 3; ++k) axes.axis[k][k] = 1;
+        return axes;
+    }
+    const double part = 1 / double(sums.count);
+    axes.mean = sums.first * part;
+    const Vec3d m = aboutMean ? axes.mean : Vec3d{};
+    Eigen::Matrix3d moment;
+    moment << sums.xx * part - m.x * m.x, sums.xy * part - m.x * m.y, sums.xz * part - m.x * m.z, 0,
+        sums.yy * part - m.y * m.y, sums.yz * part - m.y * m.z, 0, 0, sums.zz * part - m.z * m.z;
+    const Eigen::Matrix3d full = moment.selfadjointView<Eigen::Upper>();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(full);
+    for (int k = 0; k < 3; ++k) {
+        Eigen::Vector3d axis = solver.eigenvectors().col(k);
+        Eigen::Index largest;
+        axis.cwiseAbs().maxCoeff(&largest);
+        if (axis(largest) < 0) axis = -axis;
+        axes.axis[k] = {axis.x(), axis.y(), axis.z()};
+        axes.variance[k] = std::max(solver.eigenvalues()(k), 0.0);
+    }
+    return axes;
+}
+
 }  // namespace vdbsynth

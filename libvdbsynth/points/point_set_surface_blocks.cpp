@@ -29,8 +29,11 @@ PointBlocks::PointBlocks(const OrientedPoints& points, const std::vector<float>&
     for (std::size_t c = 1; c < mStarts.size(); ++c) mStarts[c] += mStarts[c - 1];
     std::vector<std::uint32_t> next(mStarts.begin(), mStarts.end() - 1);
     mPoints.resize(n);
+    mNumbers.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
-        mPoints[next[cells[i]]++] = {points.point[i], 1 / (reach[i] * reach[i]), points.normal[i], reach[i]};
+        const std::size_t at = next[cells[i]]++;
+        mPoints[at] = {points.point[i], 1 / (reach[i] * reach[i]), points.normal[i], reach[i]};
+        mNumbers[at] = std::uint32_t(i);
         mLeastReach = std::min(mLeastReach, reach[i]);
         for (int axis = 0; axis < 3; ++axis) {
             mLow[axis] = std::min(mLow[axis], points.point[i][axis] - reach[i]);

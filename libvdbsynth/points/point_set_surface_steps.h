@@ -93,7 +93,8 @@ public:
 
     const std::vector<StoredPoint>& points() const { return mPoints; }
     const StoredPoint& operator[](std::size_t i) const { return mPoints[i]; }
-    std::size_t occupied() const;  ///< cells
+    std::uint32_t number(std::size_t i) const { return mNumbers[i]; }  ///< in the order of the input
+    std::size_t occupied() const;                                      ///< cells
     float leastReach() const { return mLeastReach; }
     const Vec3f& low() const { return mLow; }  ///< of the box of all that points reach
     const Vec3f& high() const { return mHigh; }
@@ -130,6 +131,7 @@ private:
     std::int32_t mBlocks = 0;
     std::vector<std::uint32_t> mStarts;  // [blocks * 512 + 1] first point of each cell
     std::vector<StoredPoint> mPoints;
+    std::vector<std::uint32_t> mNumbers;
 };
 
 inline constexpr int kBlockSide = 8;  // cells

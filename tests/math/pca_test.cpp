@@ -60,3 +60,20 @@ TEST_CASE("principalAxes: rows that are all alike have an axis and no variance",
     CHECK(axes.count == 2);
     CHECK(axes.mean == std::vector<float>{2, 2, 2});
 }
+
+TEST_CASE("pointAxes: the axes of a box's corners, by hand") {
+    PointSums sums;
+    for (int i = 0; i < 8; ++i) sums.add({i & 1 ? 7.0 : 1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 4.0 : 0.0});
+    const PointAxes axes = pointAxes(sums);
+    CHECK(axes.mean.x == Approx(4));
+    CHECK(axes.mean.z == Approx(2));
+    CHECK(axes.variance[0] == Approx(1));
+    CHECK(axes.variance[1] == Approx(4));
+    CHECK(axes.variance[2] == Approx(9));
+    CHECK(axes.axis[0].y == Approx(1));
+    CHECK(axes.axis[1].z == Approx(1));
+    CHECK(axes.axis[2].x == Approx(1));
+    CHECK(axes.variation() == Approx(1.0 / 14));
+    CHECK(pointAxes(sums, false).variance[2] > 9);  // about the origin
+    CHECK(pointAxes({}).variation() == 0);
+}

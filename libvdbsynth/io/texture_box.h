@@ -8,8 +8,8 @@
 
 namespace vdbsynth {
 
-/// The box of a geometry texture whose points go on beyond it: what is between its corners is texture, what
-/// is outside only says how it continues.
+/// The box of a geometry texture whose points continue beyond it: what is between its corners is texture,
+/// what is outside only says how it continues.
 struct TextureBox {
     Vec3d low, high;  ///< [world] corners, low below high along every axis
     /// The reference plane of a sheet; the box's side across it is the texture's height. None: the texture

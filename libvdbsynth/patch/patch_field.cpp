@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kMostNodes = 2147483648.0;
 
-// The nodes that no point is near are inside only under a node that is, down to another one or to the bottom: a
-// solid has a top. So a tube that ends open is not drawn out upward.
+// The nodes that no point is near are inside only under a node that is, down to another one or to the bottom:
+// a solid has a top. So a tube that ends open is not drawn out upward.
 void fillColumn(float* column, int nz, const std::vector<bool>& known) {
     const auto inside = [&](int k) { return column[k * kFieldValues] < 0; };
     int above = nz;  // the nearest known node upward, nz: none

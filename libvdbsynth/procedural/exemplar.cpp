@@ -6,18 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace vdbsynth {
 namespace {
-
-const ExemplarKind& findKind(const std::string& name) {
-    std::string names;
-    for (const ExemplarKind& kind : exemplarKinds()) {
-        if (kind.name == name) return kind;
-        names += (names.empty() ? "" : ", ") + kind.name;
-    }
-    throw Error(ErrorCode::InvalidOption, "make " + name + ": unknown kind; one of " + names);
-}
 
 Index3 defaultSize(const ExemplarKind& kind, const ExemplarOptions& options, double feature) {
     Index3 size{options.resolution, options.resolution, options.resolution};
@@ -26,27 +18,75 @@ Index3 defaultSize(const ExemplarKind& kind, const ExemplarOptions& options, dou
     return size;
 }
 
+// The shapes of which a kind is the union, or none.
+std::optional<std::vector<Primitive>> shapesOf(const std::string& kind, const ExemplarRequest& request,
+                                               const RunContext& ctx) {
+    if (kind == "balls") return ballsPrimitives(request, ctx);
+    if (kind == "grid") return gridPrimitives(request);
+    if (kind == "chainmail") return chainmailPrimitives(request);
+    if (kind == "fibres") return fibresPrimitives(request);
+    if (kind == "weave") return weavePrimitives(request);
+    if (kind == "flowers") return flowersPrimitives(request);
+    if (kind == "three-tori") return threeToriPrimitives(request);
+    return std::nullopt;
+}
+
+BrickField fieldOf(const std::string& kind, const ExemplarRequest& request, const RunContext& ctx) {
+    if (kind == "foam") return foamField(request, ctx);
+    if (kind == "sponge") return spongeField(request, ctx);
+    return kind == "bumps" ? bumpsField(request, ctx) : terrainField(request, ctx);
+}
+
+// The union sampled `fine` times as finely.
+BrickField finerUnion(std::vector<Primitive> shapes, const IndexBox& box, int fine, const RunContext& ctx) {
+    for (Primitive& shape : shapes) shape = scaled(shape, fine);
+    IndexBox samples;
+    for (int axis = 0; axis < 3; ++axis) {
+        samples.min[axis] = box.min[axis] * fine;
+        samples.max[axis] = box.max[axis] * fine;
+    }
+    return unionField(shapes, samples, kExemplarLimit, ctx);
+}
+
+void validateSampling(const ExemplarSampling& sampling) {
+    for (int axis = 0; axis < 3; ++axis)
+        requireOption(sampling.margin[axis] >= kExemplarMargin && sampling.margin[axis] <= 4096, "margin",
+                      std::to_string(sampling.margin[axis]),
+                      "from " + std::to_string(kExemplarMargin) + " to 4096 voxels");
+    requireOption(sampling.fine >= 1 && sampling.fine <= 8, "fine", std::to_string(sampling.fine),
+                  "from 1 to 8");
+}
+
 }  // namespace
 
 const std::vector<ExemplarKind>& exemplarKinds() {
     static const std::vector<ExemplarKind> kinds{
-        {"balls", "packed balls that do not overlap", 16, 0},
-        {"grid", "bars along three axes with a ball at each crossing", 16, 0},
-        {"chainmail", "a sheet of linked rings", 24, 0.9},
-        {"fibres", "wavy fibres along x", 12, 0},
-        {"foam", "closed cells with thin walls", 20, 0},
-        {"sponge", "a thresholded random field", 20, 0},
-        {"terrain", "hills with finer and finer detail", 32, 1.25},
-        {"three-tori", "three linked rings, a single object", 16, 0},
-        {"weave", "yarns over and under each other", 16, 1.25},
-        {"flowers", "loose flowers over a plane", 24, 0.9},
-        {"bumps", "round bumps on a plane", 16, 1},
+        {"balls", "packed balls that do not overlap", 16, 0, 0.4},
+        {"grid", "bars along three axes with a ball at each crossing", 16, 0, 0.12},
+        {"chainmail", "a sheet of linked rings", 24, 0.9, 0.05},
+        {"fibres", "wavy fibres along x", 12, 0, 0.2},
+        {"foam", "closed cells with thin walls", 20, 0, 0.14},
+        {"sponge", "a thresholded random field", 20, 0, 0.2},
+        {"terrain", "hills with finer and finer detail", 32, 1.25, 0.06},
+        {"three-tori", "three linked rings, a single object", 16, 0, 0.25},
+        {"weave", "yarns over and under each other", 16, 1.25, 0.21},
+        {"flowers", "loose flowers over a plane", 24, 0.9, 0.07},
+        {"bumps", "round bumps on a plane", 16, 1, 0.2},
     };
     return kinds;
 }
 
+const ExemplarKind& exemplarKind(const std::string& name) {
+    std::string names;
+    for (const ExemplarKind& kind : exemplarKinds()) {
+        if (kind.name == name) return kind;
+        names += (names.empty() ? "" : ", ") + kind.name;
+    }
+    throw Error(ErrorCode::InvalidOption, "make " + name + ": unknown kind; one of " + names);
+}
+
 void validate(const ExemplarOptions& options) {
-    findKind(options.kind);
+    exemplarKind(options.kind);
     requireOption(options.feature == 0 || (options.feature >= 4 && options.feature <= 256), "feature",
                   roundedText(options.feature, 6), "from 4 to 256 voxels");
     requireOption(options.resolution >= 16 && options.resolution <= 4096, "resolution",
@@ -59,47 +99,35 @@ void validate(const ExemplarOptions& options) {
 }
 
 ExemplarField makeExemplar(const ExemplarOptions& options, const RunContext& ctx) {
+    return makeExemplar(options, ExemplarSampling{}, ctx);
+}
+
+ExemplarField makeExemplar(const ExemplarOptions& options, const ExemplarSampling& sampling,
+                           const RunContext& ctx) {
     validate(options);
-    const ExemplarKind& kind = findKind(options.kind);
+    validateSampling(sampling);
+    const ExemplarKind& kind = exemplarKind(options.kind);
     const double feature = options.feature > 0 ? options.feature : kind.feature;
     Index3 size = options.size;
     if (size == Index3{0, 0, 0}) size = defaultSize(kind, options, feature);
-    requireMemory(ctx, double(size.x) * size.y * size.z * 12, "make " + kind.name,
-                  "use a smaller `resolution` or `size`");
     ExemplarRequest request;
     request.domain = IndexBox::fromSize(size);
-    request.box = request.domain.expanded(kExemplarMargin);
+    request.box = {request.domain.min - sampling.margin, request.domain.max + sampling.margin};
     request.feature = feature;
     request.seed = ctx.seed;
+    // Only bricks near the surface hold samples, so that memory grows as its area.
+    requireMemory(ctx, double(request.domain.volume()) * 12 * sampling.fine * sampling.fine,
+                  "make " + kind.name, "use a smaller `resolution` or `size`");
     Stage stage(ctx, "make " + kind.name, 1);
     ExemplarField result;
     result.domain = request.domain;
-    const auto fromPrimitives = [&](const std::vector<Primitive>& primitives) {
-        result.field = unionField(primitives, request.box, kExemplarLimit, ctx);
-    };
-    if (kind.name == "balls")
-        fromPrimitives(ballsPrimitives(request, ctx));
-    else if (kind.name == "grid")
-        fromPrimitives(gridPrimitives(request));
-    else if (kind.name == "chainmail")
-        fromPrimitives(chainmailPrimitives(request));
-    else if (kind.name == "fibres")
-        fromPrimitives(fibresPrimitives(request));
-    else if (kind.name == "weave")
-        fromPrimitives(weavePrimitives(request));
-    else if (kind.name == "flowers")
-        fromPrimitives(flowersPrimitives(request));
-    else if (kind.name == "three-tori")
-        fromPrimitives(threeToriPrimitives(request));
-    else if (kind.name == "bumps")
-        result.field = bumpsField(request, ctx);
-    else if (kind.name == "foam")
-        result.field = foamField(request, ctx);
-    else if (kind.name == "sponge")
-        result.field = spongeField(request, ctx);
-    else
-        result.field = terrainField(request, ctx);
-    result.exact = kind.name != "sponge" && kind.name != "terrain" && kind.name != "bumps";
+    if (const auto shapes = shapesOf(kind.name, request, ctx)) {
+        result.fine = sampling.fine;
+        result.field = finerUnion(*shapes, request.box, result.fine, ctx);
+    } else {
+        result.field = fieldOf(kind.name, request, ctx);
+        result.exact = kind.name == "foam";
+    }
     stage.advance();
     return result;
 }

@@ -21,19 +21,35 @@ struct ExemplarKind {
     std::string name, summary;
     double feature;           ///< default feature [voxels]
     double heightInFeatures;  ///< z side of the default domain in features; 0: as long as x and y
+    double detail;            ///< radius of the finest rounding that is part of its look [features]
+
+    /// A sheet along x and y; the others fill space.
+    bool isSheet() const { return heightInFeatures > 0; }
 };
 
 const std::vector<ExemplarKind>& exemplarKinds();
 
-struct ExemplarField {
-    BrickField field;   ///< distances [voxels], clamped to +-kExemplarLimit, over `domain` enlarged by
-                        ///< kExemplarMargin
-    IndexBox domain;    ///< begins at 0; the solid is not yet clipped to it
-    bool exact = true;  ///< false: only the zero level is valid, distances must still be computed
-};
+/// The kind of this name. @throw Error InvalidOption, which names all
+const ExemplarKind& exemplarKind(const std::string& name);
 
 inline constexpr float kExemplarLimit = 4.f;
 inline constexpr int kExemplarMargin = 6;
+
+/// How far beyond its domain and how finely an exemplar is sampled. The geometry stays as it is,
+/// but of balls and foam, which are packed anew in a larger box.
+struct ExemplarSampling {
+    Index3 margin{kExemplarMargin, kExemplarMargin, kExemplarMargin};  ///< [voxels] beyond the domain, at
+                                                                       ///< least kExemplarMargin
+    int fine = 1;                                                      ///< samples along a voxel's side, 1..8
+};
+
+struct ExemplarField {
+    BrickField field;   ///< distances [samples], clamped to +-kExemplarLimit, over `domain` enlarged by the
+                        ///< margin; sample i * fine is the middle of voxel i
+    IndexBox domain;    ///< [voxels] begins at 0; the solid is not yet clipped to it
+    int fine = 1;       ///< samples along a voxel's side; 1 of kinds that are no unions of simple shapes
+    bool exact = true;  ///< false: only the zero level is valid, distances must still be computed
+};
 
 /// @throw Error InvalidOption (unknown kind, a field out of its range)
 void validate(const ExemplarOptions& options);
@@ -41,5 +57,9 @@ void validate(const ExemplarOptions& options);
 /// @throw Error InvalidOption (unknown kind, size or feature out of range), Cancelled
 /// @par Repeats same bits for (options, ctx.seed), any number of threads
 ExemplarField makeExemplar(const ExemplarOptions& options, const RunContext& ctx = {});
+/// The same with more around it, or sampled more finely.
+/// @throw Error as makeExemplar; InvalidOption (a field of `sampling` out of its range)
+ExemplarField makeExemplar(const ExemplarOptions& options, const ExemplarSampling& sampling,
+                           const RunContext& ctx);
 
 }  // namespace vdbsynth

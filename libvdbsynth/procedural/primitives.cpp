@@ -78,6 +78,13 @@ Primitive capsule(const Vec3d& a, const Vec3d& b, double radius) {
 Primitive torus(const Vec3d& centre, const Vec3d& axis, double ring, double tube) {
     return {Primitive::Kind::Torus, centre, normalized(axis), tube, ring};
 }
+Primitive scaled(Primitive shape, double by) {
+    shape.a = shape.a * by;
+    if (shape.kind == Primitive::Kind::Capsule) shape.b = shape.b * by;
+    shape.radius *= by;
+    shape.ring *= by;
+    return shape;
+}
 
 BrickField unionField(const std::vector<Primitive>& primitives, const IndexBox& box, float limit,
                       const RunContext& ctx) {

@@ -22,6 +22,8 @@ struct Primitive {
 Primitive ball(const Vec3d& centre, double radius);
 Primitive capsule(const Vec3d& a, const Vec3d& b, double radius);
 Primitive torus(const Vec3d& centre, const Vec3d& axis, double ring, double tube);
+/// The same shape in voxels of 1/`by` the side.
+Primitive scaled(Primitive shape, double by);
 
 /// Distance to the union of primitives over a box, clamped to +-limit. Exact outside the union; inside
 /// overlaps it is the deepest primitive's. Cost O(bricks * primitives near each).

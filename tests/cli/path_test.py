@@ -315,6 +315,22 @@ class MainPath(CliTest):
                 self.ok("make", kind, f"{kind}{seed}.vdb", "--resolution", 24, "--seed", seed)
             self.assertNotEqual(self.read(f"{kind}0.vdb"), self.read(f"{kind}1.vdb"))
 
+    def test_a_texture_as_points_goes_on_beyond_its_domain(self):
+        self.ok("make", "weave", "w.ply", "-o", "w.obj", "-o", "w.vdb", "--resolution", 32, "--margin", 5, "--voxel-size", 0.5, "--report", "r.json")
+        header = self.read("w.ply").split(b"end_header")[0].decode()
+        self.assertIn("\ncomment vdbsynth:domain -0.25,-0.25,-0.25,15.75,15.75,9.75\ncomment vdbsynth:plane xy\n", header)
+        self.assertNotIn("element face", header)
+        points = json.loads(self.ok("info", "w.ply", "--json").stdout)
+        self.assertTrue(points["normals"])
+        self.assertEqual(points["points"], json.loads(self.read("r.json"))["counts"]["points"])
+        for low, high in zip(points["bounds_min"][:2], points["bounds_max"][:2]):
+            self.assertTrue(-2.75 <= low < -2.5 and 18 < high <= 18.25, points)
+        self.assertTrue(json.loads(self.ok("info", "w.obj", "--json").stdout)["closed_manifold"])
+        self.ok("make", "weave", "f.ply", "--resolution", 32, "--spacing", 0.5)
+        self.assertGreater(len(self.read("f.ply")), len(self.read("w.ply")))
+        self.fails(2, "--margin", "make", "weave", "f.ply", "--margin", -1)
+        self.fails(2, "--spacing", "make", "weave", "f.ply", "--spacing", 0.1)
+
 
 class Determinism(CliTest):
     def test_bytes_do_not_depend_on_threads_path_or_time(self):

@@ -139,6 +139,41 @@ TEST_CASE("makeExemplar: lattice kinds of a larger domain begin with the smaller
     }
 }
 
+TEST_CASE("makeExemplar: finer samples and more around are the same geometry", "[procedural][property]") {
+    for (const char* kind :
+         {"grid", "chainmail", "fibres", "weave", "flowers", "bumps", "terrain", "sponge"}) {
+        INFO(kind);
+        const ExemplarField plain = makeExemplar(optionsFor(kind, 32));
+        ExemplarSampling sampling;
+        sampling.margin = {16, 9, 6};
+        sampling.fine = 3;
+        const ExemplarField finer = makeExemplar(optionsFor(kind, 32), sampling, {});
+        const bool shapes = finer.fine == 3;
+        CHECK(shapes == (plain.exact));
+        CHECK(finer.domain == plain.domain);
+        CHECK(finer.field.box().min == Index3{-16, -9, -6} * finer.fine);
+        const float limit = kExemplarLimit / float(finer.fine);
+        // Yarns are chords of a tenth of a feature, which begin elsewhere.
+        forEachVoxel(plain.domain, [&](const Index3& voxel) {
+            const float expected = std::clamp(plain.field.at(voxel), -limit, limit);
+            REQUIRE(finer.field.at(voxel * finer.fine) / float(finer.fine) == Approx(expected).margin(0.1));
+        });
+    }
+}
+
+TEST_CASE("makeExemplar: each error of the sampling", "[procedural][error]") {
+    const auto fails = [](ExemplarSampling sampling, const char* says) {
+        const test::Thrown thrown =
+            test::thrownBy([&] { makeExemplar(optionsFor("grid", 32), sampling, {}); });
+        CHECK(thrown.code == int(ErrorCode::InvalidOption));
+        CHECK(test::contains(thrown.message, says));
+    };
+    fails({{6, 6, 5}, 1}, "`margin` 5");
+    fails({{6, 5000, 6}, 1}, "`margin` 5000");
+    fails({{6, 6, 6}, 0}, "`fine` 0");
+    fails({{6, 6, 6}, 9}, "`fine` 9");
+}
+
 TEST_CASE("makeExemplar: sizes, features and errors", "[procedural][error]") {
     ExemplarOptions options = optionsFor("weave");
     CHECK(makeExemplar(options).domain.size() == Index3{48, 48, 20});

@@ -37,3 +37,10 @@ TEST_CASE("unionField: equals the least of all distances, clamped", "[procedural
         REQUIRE(double(field.at(p)) == Approx(std::max(nearest, -4.0)).margin(1e-5));
     }
 }
+
+TEST_CASE("scaled: distances of the same shapes in finer voxels", "[procedural][property]") {
+    for (const Primitive& shape :
+         {ball({1, 2, 3}, 2), capsule({0, 1, 0}, {4, 0, 2}, 1), torus({3, 1, 1}, {0.2, 0.1, 1}, 4, 1)})
+        for (const Vec3d& p : {Vec3d{0, 0, 0}, Vec3d{5, -2, 1}, Vec3d{2, 2, 2}})
+            CHECK(scaled(shape, 3).distance(p * 3.0) == Approx(3 * shape.distance(p)));
+}

@@ -1,8 +1,11 @@
 #include "tools/vdb_synth/command.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/io/path.h"
+#include "libvdbsynth/io/textured_mesh.h"
 #include "libvdbsynth/pipeline/convert/outputs.h"
 #include "libvdbsynth/pipeline/make/make.h"
+#include "libvdbsynth/pipeline/make/make_points.h"
 #include "libvdbsynth/procedural/analogy_pair.h"
 
 #include <nlohmann/json.hpp>
@@ -42,6 +45,37 @@ void makeTwo(Run& run, const MakeOptions& options) {
     run.finish();
 }
 
+bool isPoints(const std::string& path) {
+    return extensionOf(path) == "ply";
+}
+
+// The points of a texture, into the .ply files among the paths.
+void makePly(Run& run, const MakeOptions& model, const std::vector<std::string>& paths) {
+    MakePointsOptions options;
+    options.model = model;
+    options.spacing = run.arguments.real("spacing");
+    if (run.arguments.has("margin")) options.margin = run.arguments.real("margin");
+    const TexturePoints made = makePoints(options, run.context);
+    std::vector<std::string> comments = textureBoxComments(made.box);
+    comments.push_back("vdbsynth:kind " + model.exemplar.kind);
+    for (const std::string& path : paths) {
+        Stage stage(run.context, "writing " + path, 1);
+        writePly(run.outputs().add(path), made.cloud, comments);
+        stage.advance();
+    }
+    run.count("points", made.cloud.points.size());
+}
+
+void makeLevelSet(Run& run, const MakeOptions& options, const std::vector<std::string>& paths) {
+    const LevelSet model =
+        withHalfWidth(makeModel(options, run.context), run.arguments.real("half-width"), run.context);
+    ModelOutputOptions outputs;
+    outputs.metadata = run.metadata();
+    outputs.metadata.emplace_back("vdbsynth:kind", options.exemplar.kind);
+    writeModel(model, paths, outputs, run.outputs(), run.context);
+    run.describe(model);
+}
+
 void make(Run& run) {
     run.requireInputs(1, 3);
     MakeOptions options;
@@ -61,13 +95,9 @@ void make(Run& run) {
     if (paths.empty()) throw Error(ErrorCode::InvalidOption, "no output; usage: vdb_synth " + kMake.usage);
     requireOutputPaths(paths);
     run.reserveOutputs();
-    const double halfWidth = run.arguments.real("half-width");
-    const LevelSet model = withHalfWidth(makeModel(options, run.context), halfWidth, run.context);
-    ModelOutputOptions outputs;
-    outputs.metadata = run.metadata();
-    outputs.metadata.emplace_back("vdbsynth:kind", options.exemplar.kind);
-    writeModel(model, paths, outputs, run.outputs(), run.context);
-    run.describe(model);
+    const auto others = std::stable_partition(paths.begin(), paths.end(), isPoints);
+    if (others != paths.begin()) makePly(run, options, {paths.begin(), others});
+    if (others != paths.end()) makeLevelSet(run, options, {others, paths.end()});
     run.finish();
 }
 

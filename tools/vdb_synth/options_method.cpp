@@ -29,6 +29,11 @@ std::vector<Option> resultTable() {
             .otherwiseIs("the kind's own")
             .noting("a larger domain holds more of them")
             .takenBy({"make"}),
+        real("margin", "V", 0, 4000)
+            .measuredIn(Unit::Voxels)
+            .says("how far the points of a .ply extend beyond the domain")
+            .otherwiseIs("two thirds of the feature: a third of a patch of two features")
+            .takenBy({"make"}),
         axisChoices("border", "KIND",
                     {{"cut", ""}, {"object", ""}, {"tile", "the result repeats without a seam"}})
             .says("how the result ends along an axis that grows")

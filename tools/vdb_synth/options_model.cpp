@@ -173,7 +173,13 @@ std::vector<Option> outputTable() {
             .says("file to write, its kind by extension: .vdb, .obj, .ply, .stl, .off, .glb, .gltf, .3mf; "
                   "heights as .png or .exr")
             .repeatable()
-            .takenBy({"convert", "crop", "synth", "analogy", "repeat", "make", "relief"}),
+            .takenBy({"convert", "crop", "synth", "analogy", "repeat", "make", "relief"})
+            .butFor(
+                "make",
+                [](Option& o) {
+                    o.noting(
+                        "a .ply of a texture holds points, which continue beyond the domain without caps");
+                }),
         output("output", "FILE", {"ply", "obj", "off", "glb", "gltf", "3mf", "vdb", "png", "exr"})
             .shortly('o')
             .says("file to write, its kind by extension: .ply points or mesh, .obj, .off, .glb, .gltf, .3mf "
@@ -266,7 +272,14 @@ std::vector<Option> outputTable() {
             .measuredIn(Unit::Voxels)
             .says("least distance between points written")
             .initially("1")
-            .takenBy({"convert"}),
+            .takenBy({"convert", "make"})
+            .butFor("make",
+                    [](Option& o) {
+                        o.from(0.125, 100)
+                            .says("least distance between the points of a .ply")
+                            .initially("")
+                            .otherwiseIs("a quarter of the radius of the kind's finest parts, 0.25 to 1");
+                    }),
         option(Kind::Text, "carry", "NAMES")
             .in(Group::Output)
             .says("attributes and grids of the exemplar to transfer: all, or names with commas")

@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <unordered_map>
 #include <utility>
 
 namespace vdbsynth {
@@ -55,25 +54,55 @@ std::vector<Candidate> throwCandidates(const Mesh& mesh, double spacing, std::ui
     return candidates;
 }
 
+// The points kept so far, in cells as wide as the spacing: a flat hash table, for most of the time goes into
+// looking cells up.
 class Occupied {
 public:
-    explicit Occupied(double spacing) : mSpacing(spacing) {}
+    explicit Occupied(double spacing) : mSpacing(spacing), mCells(1 << 10) {}
     bool tryAdd(const Vec3f& p) {
         const Index3 cell = cellOf(p);
         if (hasNear(cell, p)) return false;
         for (const Index3& step : kAllNeighbours)
             if (hasNear(cell + step, p)) return false;
-        mCells[key(cell)].push_back(p);
+        add(key(cell), p);
         return true;
     }
 
 private:
+    static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+    struct Cell {
+        std::uint64_t key = 0;
+        std::uint32_t newest = kNone;  // of its points; kNone: the slot is free
+    };
+    struct Kept {
+        Vec3f point;
+        std::uint32_t older;  // in the same cell
+    };
+
     bool hasNear(const Index3& cell, const Vec3f& p) const {
-        const auto it = mCells.find(key(cell));
-        if (it == mCells.end()) return false;
-        for (const Vec3f& other : it->second)
-            if (double(length(other - p)) < mSpacing) return true;
+        for (std::uint32_t i = mCells[slotOf(key(cell))].newest; i != kNone; i = mKept[i].older)
+            if (double(length(mKept[i].point - p)) < mSpacing) return true;
         return false;
+    }
+    void add(std::uint64_t key, const Vec3f& p) {
+        if (2 * mUsed >= mCells.size()) grow();
+        Cell& cell = mCells[slotOf(key)];
+        mUsed += cell.newest == kNone;
+        mKept.push_back({p, cell.newest});
+        cell = {key, std::uint32_t(mKept.size() - 1)};
+    }
+    void grow() {
+        std::vector<Cell> old(2 * mCells.size());
+        old.swap(mCells);
+        for (const Cell& cell : old)
+            if (cell.newest != kNone) mCells[slotOf(cell.key)] = cell;
+    }
+    // The slot of a key, or the free one where it belongs.
+    std::size_t slotOf(std::uint64_t key) const {
+        const std::size_t mask = mCells.size() - 1;
+        std::size_t slot = std::size_t((key * 0x9E3779B97F4A7C15u) >> 32) & mask;
+        while (mCells[slot].newest != kNone && mCells[slot].key != key) slot = (slot + 1) & mask;
+        return slot;
     }
     Index3 cellOf(const Vec3f& p) const {
         return {int(std::floor(double(p.x) / mSpacing)), int(std::floor(double(p.y) / mSpacing)),
@@ -85,7 +114,9 @@ private:
                std::uint64_t(c.z & 0x1FFFFF);
     }
     double mSpacing;
-    std::unordered_map<std::uint64_t, std::vector<Vec3f>> mCells;
+    std::vector<Cell> mCells;  // a power of two, at most half used
+    std::size_t mUsed = 0;
+    std::vector<Kept> mKept;
 };
 
 }  // namespace

@@ -31,8 +31,9 @@ PatchLattice latticeOf(const Vec3d& size, double step);
 
 /// D(T) [duranleau2006, 5.1]: at every node the signed distance to a point-set surface, in steps, clamped to
 /// +-kFieldReach, and its gradient, the direction from the surface to the node outside and the reverse
-/// inside. Nodes farther from all points than `reach` have that limit, with the sign of the nearest node
-/// along the column that knows one, else outside, and the gradient 0.
+/// inside. Nodes farther from all points than `reach` have that limit and the gradient 0: inside below
+/// a measured node that is, down to the next measured one if that is inside too, or to the bottom, else
+/// outside.
 struct PatchField {
     PatchLattice lattice;
     std::vector<float> values;  ///< [columns x nz x 4]

@@ -23,7 +23,7 @@ struct SheetPoints {
 struct SheetOptions {
     double reach = 0;    ///< [steps] 0..64: how far from a border a warp fades; 0: no warp
     bool blend = true;   ///< points at borders are projected on what both sides describe together
-    bool even = true;    ///< points of different patches that come too near each other lose one
+    bool even = true;    ///< and spread evenly there (points/even_sampling.h)
     double limit = 1.5;  ///< [steps] 0.1..8: two sides farther apart than that are left as they are
 };
 

@@ -1,6 +1,6 @@
 #include "libvdbsynth/base/parallel.h"
-#include "libvdbsynth/geometry/point_neighbours.h"
 #include "libvdbsynth/patch/sheet/sheet_points_steps.h"
+#include "libvdbsynth/points/even_sampling.h"
 #include "libvdbsynth/points/point_set_surface.h"
 
 #include <algorithm>
@@ -10,9 +10,7 @@
 namespace vdbsynth {
 namespace {
 
-constexpr int kBlendRings = 2;     // of nodes beside a border whose points move
-constexpr double kTooNear = 0.45;  // [spacings]
-constexpr std::size_t kNearest = 6;
+constexpr int kBlendRings = 2;  // of nodes beside a border whose points move
 
 // Rings of nodes whose points the surface at the moved ones depends on: 6.9 spacings, and one more.
 int supportRings(const SheetSource& source) {
@@ -30,41 +28,36 @@ std::size_t nodeOf(const PatchArrangement& a, const Vec3f& point) {
            std::size_t(at(point.z, a.lattice.nz));
 }
 
-template <typename T>
-void keep(std::vector<T>& values, const std::vector<std::uint8_t>& dropped) {
-    std::size_t to = 0;
-    for (std::size_t from = 0; from < values.size(); ++from)
-        if (!dropped[from]) values[to++] = values[from];
-    values.resize(to);
-}
-
-// Of two points of different patches that are too near each other the one of the later patch goes.
-void dropNear(const std::vector<std::uint32_t>& near, double spacing, SheetPoints& sheet,
-              const RunContext& ctx) {
-    std::vector<Vec3f> places;
-    for (const std::uint32_t point : near) places.push_back(sheet.points[point]);
-    const PointNeighbours neighbours(places);
-    std::vector<std::uint8_t> dropped(sheet.size(), 0);
-    const float apart = float(kTooNear * kTooNear * spacing * spacing);
-    parallelFor(ctx, near.size(), 256, [&](std::size_t begin, std::size_t end) {
-        std::uint32_t numbers[kNearest];
-        float squared[kNearest];
-        for (std::size_t n = begin; n < end; ++n) {
-            const std::size_t found = neighbours.nearest(places[n], kNearest, numbers, squared);
-            const std::uint32_t own = near[n];
-            for (std::size_t f = 0; f < found; ++f) {
-                const std::uint32_t other = near[numbers[f]];
-                if (squared[f] < apart && sheet.patch[other] < sheet.patch[own] &&
-                    dot(sheet.normals[other], sheet.normals[own]) > 0)
-                    dropped[own] = 1;
-            }
-        }
-    });
-    keep(sheet.points, dropped);
-    keep(sheet.normals, dropped);
-    keep(sheet.source, dropped);
-    keep(sheet.patch, dropped);
-    keep(sheet.blended, dropped);
+// Spreads the moved points evenly; all others stay.
+void spread(const PointSetSurface& surface, const std::vector<std::uint32_t>& near,
+            const std::vector<std::uint8_t>& moves, double spacing, SheetPoints& sheet,
+            const RunContext& ctx) {
+    std::vector<Vec3f> points, normals;
+    std::vector<char> fixed;
+    for (std::size_t n = 0; n < near.size(); ++n) {
+        points.push_back(sheet.points[near[n]]);
+        normals.push_back(sheet.normals[near[n]]);
+        fixed.push_back(moves[n] ? 0 : 1);
+    }
+    EvenSamplingOptions options;
+    options.spacing = spacing;
+    options.rounds = 3;
+    const EvenSampling even = evenSampling(surface, points, normals, fixed, options, ctx);
+    SheetPoints result;
+    std::vector<std::uint8_t> replaced(sheet.size(), 0);
+    for (const std::uint32_t point : near) replaced[point] = 1;
+    const auto add = [&](std::size_t from, const Vec3f& point, const Vec3f& normal) {
+        result.points.push_back(point);
+        result.normals.push_back(normal);
+        result.source.push_back(sheet.source[from]);
+        result.patch.push_back(sheet.patch[from]);
+        result.blended.push_back(sheet.blended[from]);
+    };
+    for (std::size_t p = 0; p < sheet.size(); ++p)
+        if (!replaced[p]) add(p, sheet.points[p], sheet.normals[p]);
+    for (std::size_t p = 0; p < even.points.size(); ++p)
+        add(near[even.source[p]], even.points[p], even.normals[p]);
+    sheet = std::move(result);
 }
 
 }  // namespace
@@ -73,12 +66,15 @@ void blendBorders(const SheetSource& source, SheetPoints& sheet, const RunContex
     const int support = supportRings(source);
     const std::vector<std::uint8_t> distance = borderDistance(source.arrangement, support + 1, ctx);
     std::vector<Vec3f> points, normals;
-    std::vector<std::uint32_t> moving;
+    std::vector<std::uint32_t> moving, near;
+    std::vector<std::uint8_t> moves;
     for (std::size_t p = 0; p < sheet.size(); ++p) {
         const int ring = distance[nodeOf(source.arrangement, sheet.points[p])];
         if (ring > support) continue;
         points.push_back(sheet.points[p]);
         normals.push_back(sheet.normals[p]);
+        near.push_back(std::uint32_t(p));
+        moves.push_back(ring < kBlendRings ? 1 : 0);
         if (ring < kBlendRings) moving.push_back(std::uint32_t(p));
     }
     if (moving.empty()) return;
@@ -103,7 +99,7 @@ void blendBorders(const SheetSource& source, SheetPoints& sheet, const RunContex
         sheet.normals[moving[m]] = turned[m];
         sheet.blended[moving[m]] = 1;
     }
-    if (source.options.even) dropNear(moving, source.exemplar.spacing, sheet, ctx);
+    if (source.options.even) spread(surface, near, moves, source.exemplar.spacing, sheet, ctx);
     stage.advance();
 }
 

@@ -13,7 +13,7 @@ namespace vdbsynth {
 namespace {
 
 constexpr int kTile = 64;   // voxels along the plane that are measured at once
-constexpr float kNear = 2;  // voxels from the points that are measured: only the zero level is meant
+constexpr float kNear = 1;  // voxels from the points that are measured: only the zero level is meant
 constexpr int kBeyond = 4;  // voxels beyond the domain
 
 bool insideSheet(const Vec3f& at, const PatchSheet& sheet) {

@@ -191,7 +191,9 @@ PatchSource loadPatchSource(const std::string& path, const PatchSourceOptions& o
     if (content.box) {
         box = *content.box;
     } else {
-        const double margin = options.margin ? *options.margin : marginOf(content, plane, spacing, ctx);
+        const double margin = options.margin ? *options.margin
+                              : points       ? marginOf(content, plane, spacing, ctx)
+                                             : kKernels * spacing;
         box = lessMargin(box, plane, margin);
         requireRoom(box, path, margin);
         message(ctx, MessageLevel::Note,

@@ -3,6 +3,7 @@
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/geometry/local_points.h"
 #include "libvdbsynth/geometry/point_neighbours.h"
+#include "libvdbsynth/math/disjoint_sets.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -51,16 +52,14 @@ void dropRepeats(PointCloud& cloud) {
 // A point this many spreads from the others' centre leaves them no digits in floats of their common box.
 constexpr double kAstray = 1e6;
 
-// Removes points that are so far out that distances to them mean nothing. @return their number
-std::size_t dropAstray(PointCloud& cloud) {
+// Removes points that are so far out that distances to them mean nothing.
+void dropAstray(PointCloud& cloud) {
     const PointCore core = coreOf(cloud.points);
-    if (!(core.spread > 0)) return 0;
+    if (!(core.spread > 0)) return;
     std::vector<char> keep(cloud.points.size());
     for (std::size_t i = 0; i < keep.size(); ++i)
         keep[i] = distanceFrom(core, cast<double>(cloud.points[i])) <= kAstray * core.spread;
-    const auto astray = std::size_t(std::count(keep.begin(), keep.end(), 0));
-    if (astray > 0) keepOnly(cloud, keep);
-    return astray;
+    if (std::count(keep.begin(), keep.end(), 0) > 0) keepOnly(cloud, keep);
 }
 
 // The power of two that brings points so large or small that their squares leave the range of floats to about
@@ -76,6 +75,67 @@ PointCloud atUnitScale(const PointCloud& cloud) {
     scaled.points.reserve(cloud.points.size());
     for (const Vec3f& p : cloud.points) scaled.points.push_back(cast<float>(cast<double>(p) * scale));
     return scaled;
+}
+
+// A point in the cell of a lattice.
+struct PointCell {
+    std::int64_t x, y, z;
+    std::uint32_t point;
+
+    auto place() const { return std::tie(x, y, z); }
+    bool operator<(const PointCell& other) const {
+        return place() != other.place() ? place() < other.place() : point < other.point;
+    }
+};
+
+std::vector<PointCell> cellsOf(const std::vector<Vec3f>& points, double side) {
+    std::vector<PointCell> cells(points.size());
+    const auto along = [side](float x) { return std::int64_t(std::floor(double(x) / side)); };
+    for (std::size_t i = 0; i < points.size(); ++i)
+        cells[i] = {along(points[i].x), along(points[i].y), along(points[i].z), std::uint32_t(i)};
+    std::sort(cells.begin(), cells.end());
+    return cells;
+}
+
+// Sets of the first elements of cells: those of cells that touch are one group.
+DisjointSets joinedCells(const std::vector<PointCell>& cells) {
+    DisjointSets groups(cells.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const PointCell& cell = cells[i];
+        if (i > 0 && cells[i - 1].place() == cell.place()) {
+            groups.join(std::uint32_t(i - 1), std::uint32_t(i));
+            continue;
+        }
+        // A column of the neighbours that come later lies together in the order of the cells.
+        for (const auto& [dx, dy] : {std::pair{0, 0}, {0, 1}, {1, -1}, {1, 0}, {1, 1}}) {
+            auto other = std::lower_bound(cells.begin(), cells.end(),
+                                          PointCell{cell.x + dx, cell.y + dy, cell.z - 1, 0});
+            for (; other != cells.end() && other->x == cell.x + dx && other->y == cell.y + dy &&
+                   other->z <= cell.z + 1;
+                 ++other)
+                groups.join(std::uint32_t(i), std::uint32_t(other - cells.begin()));
+        }
+    }
+    return groups;
+}
+
+// Unmarks the points of small groups that empty cells separate from all others.
+void unmarkSmallGroups(const std::vector<Vec3f>& points, double side, std::vector<char>& keep,
+                       Outliers& outliers) {
+    constexpr std::size_t kMost = 100;   // points of a small group,
+    constexpr std::size_t kShare = 100;  // and how many times as many the largest has at least
+    const std::vector<PointCell> cells = cellsOf(points, side);
+    DisjointSets groups = joinedCells(cells);
+    std::vector<std::size_t> sizes(cells.size(), 0);
+    for (std::size_t i = 0; i < cells.size(); ++i) ++sizes[groups.root(std::uint32_t(i))];
+    const std::size_t largest = *std::max_element(sizes.begin(), sizes.end());
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const std::size_t size = sizes[groups.root(std::uint32_t(i))];
+        if (size >= kMost || size * kShare >= largest) continue;
+        if (size > 1) ++outliers.grouped;
+        if (size > 1 && groups.root(std::uint32_t(i)) == i) ++outliers.groups;
+        keep[cells[i].point] = 0;
+    }
 }
 
 // The kPlane nearest points of each, itself included; short rows end with the point itself.
@@ -189,20 +249,30 @@ std::vector<float> pointSpacing(const PointCloud& cloud, const RunContext& ctx) 
     return spacing;
 }
 
-std::size_t dropOutliers(PointCloud& cloud, const RunContext& ctx) {
+Outliers dropOutliers(PointCloud& cloud, const RunContext& ctx) {
+    constexpr double kGap = 8;  // median spacings
+    Outliers outliers;
     dropRepeats(cloud);
-    if (cloud.points.size() < 8) return 0;
-    const std::size_t astray = dropAstray(cloud);
+    if (cloud.points.size() < 8) return outliers;
+    const std::size_t before = cloud.points.size();
+    dropAstray(cloud);
+    const double scale = unitScale(cloud);
     const std::vector<float> spacing =
-        unitScale(cloud) == 1 ? pointSpacing(cloud, ctx) : pointSpacing(atUnitScale(cloud), ctx);
+        scale == 1 ? pointSpacing(cloud, ctx) : pointSpacing(atUnitScale(cloud), ctx);
     std::vector<float> sorted = spacing;
     const auto median = sorted.begin() + std::ptrdiff_t(sorted.size() / 2);
     std::nth_element(sorted.begin(), median, sorted.end());
     std::vector<char> keep(spacing.size());
-    for (std::size_t i = 0; i < spacing.size(); ++i) keep[i] = spacing[i] <= 8 * *median;
-    const std::size_t before = cloud.points.size();
+    for (std::size_t i = 0; i < spacing.size(); ++i) keep[i] = spacing[i] <= float(kGap) * *median;
     keepOnly(cloud, keep);
-    return astray + before - cloud.points.size();
+    const double side = kGap * double(*median) / scale;
+    if (side > 0 && std::isfinite(side) && !cloud.points.empty()) {
+        keep.assign(cloud.points.size(), 1);
+        unmarkSmallGroups(cloud.points, side, keep, outliers);
+        keepOnly(cloud, keep);
+    }
+    outliers.points = before - cloud.points.size();
+    return outliers;
 }
 
 void estimateNormals(PointCloud& cloud, const RunContext& ctx) {

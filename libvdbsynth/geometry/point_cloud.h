@@ -21,9 +21,19 @@ struct PointCloud {
 /// @par Cost    O(points log points)   @par Repeats same bits for any number of threads
 std::vector<float> pointSpacing(const PointCloud& cloud, const RunContext& ctx = {});
 
+/// What dropOutliers removed.
+struct Outliers {
+    std::size_t points = 0;   ///< all of them
+    std::size_t groups = 0;   ///< small groups that they were of; single points are not counted
+    std::size_t grouped = 0;  ///< points of these groups
+};
+
 /// Removes points that coincide with an earlier one, and outliers: those whose spacing is over eight times
-/// the median, and those over a million times farther out than most. @return number of outliers removed
-std::size_t dropOutliers(PointCloud& cloud, const RunContext& ctx = {});
+/// the median, those over a million times farther out than most, and groups that a gap of eight to sixteen
+/// median spacings separates from all others if they have under 100 points and under a hundredth of the
+/// largest group's.
+/// @par Cost    O(points log points)   @par Repeats same bits for any number of threads
+Outliers dropOutliers(PointCloud& cloud, const RunContext& ctx = {});
 
 /// Gives every point a normal: that of the plane through its 16 nearest neighbours, oriented consistently
 /// along a minimum spanning tree of the neighbour graph, flattest pairs first, from the highest point of each

@@ -22,9 +22,11 @@ class Network {
 public:
     explicit Network(std::uint32_t nodes) : mNodes(nodes) {}
 
-    void connect(std::uint32_t from, std::uint32_t to, std::int64_t forth) {
+    void reserve(std::size_t connections) { mArcs.reserve(2 * connections); }
+
+    void connect(std::uint32_t from, std::uint32_t to, std::int64_t forth, std::int64_t reverse = 0) {
         mArcs.push_back({from, to, forth, mArcs.size() + 1});
-        mArcs.push_back({to, from, 0, mArcs.size() - 1});
+        mArcs.push_back({to, from, reverse, mArcs.size() - 1});
     }
 
     // 1 for nodes that still reach the sink at maximum flow.
@@ -40,12 +42,15 @@ public:
         }
         std::vector<std::pair<std::uint32_t, std::uint32_t>> ends;
         std::vector<std::int64_t> capacity, residual(mArcs.size());
+        ends.reserve(mArcs.size());
+        capacity.reserve(mArcs.size());
         for (std::size_t i : order) {
             ends.emplace_back(mArcs[i].from, mArcs[i].to);
             capacity.push_back(mArcs[i].capacity);
         }
         const Graph graph(boost::edges_are_sorted, ends.begin(), ends.end(), mNodes);
         std::vector<GraphEdge> back, into(mNodes);
+        back.reserve(mArcs.size());
         for (std::size_t i : order) back.push_back(GraphEdge(mArcs[i].to, at[mArcs[i].back]));
         std::vector<boost::default_color_type> side(mNodes);
         std::vector<std::uint32_t> distance(mNodes);
@@ -87,13 +92,21 @@ std::vector<std::uint8_t> leastCostAnswers(const CutProblem& problem) {
     // If no single node is cheaper as a yes, no set of nodes is.
     if (std::none_of(problem.yes.begin(), problem.yes.end(), [](std::int64_t y) { return y < 0; })) return {};
     Network network(nodes + 2);
+    network.reserve(nodes + problem.edges.size());
     for (std::uint32_t i = 0; i < nodes; ++i) {
         const std::int64_t yes = problem.yes[i];
         if (yes > 0) network.connect(source, i, yes);
         if (yes < 0) network.connect(i, sink, -yes);
     }
-    for (const CutProblem::Edge& edge : problem.edges)
-        if (edge.cost > 0) network.connect(edge.from, edge.to, edge.cost);
+    for (std::size_t e = 0; e < problem.edges.size(); ++e) {
+        const CutProblem::Edge& edge = problem.edges[e];
+        // Callers name both directions one after the other: one pair of arcs holds them.
+        const bool both = e + 1 < problem.edges.size() && problem.edges[e + 1].from == edge.to &&
+                          problem.edges[e + 1].to == edge.from;
+        const std::int32_t reverse = both ? problem.edges[e + 1].cost : 0;
+        if (edge.cost > 0 || reverse > 0) network.connect(edge.from, edge.to, edge.cost, reverse);
+        if (both) ++e;
+    }
     std::vector<std::uint8_t> answers = network.reachingSink(source, sink);
     answers.resize(nodes);
     if (std::find(answers.begin(), answers.end(), 1) == answers.end()) answers.clear();

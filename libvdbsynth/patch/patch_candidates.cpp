@@ -74,12 +74,10 @@ Query queryOf(const PatchField& exemplar, const PatchOverlap& overlap) {
 }
 
 // In double over columns, so that the sum does not depend on how far others got.
-double differenceUpTo(const Query& query, const float* from, std::size_t length, double limit) {
-    double sum = 0;
-    for (std::size_t c = 0; c < query.offset.size(); ++c) {
+double addDifference(const Query& query, std::size_t begin, std::size_t end, const float* from,
+                     std::size_t length, double sum, double limit) {
+    for (std::size_t c = begin; c < end && sum <= limit; ++c)
         sum += double(columnDifference(from + query.offset[c], query.values[c], length));
-        if (sum > limit) break;
-    }
     return sum;
 }
 
@@ -101,6 +99,45 @@ void lower(std::atomic<double>& least, double value) {
     }
 }
 
+// The places of an exemplar, compared column by column.
+struct Search {
+    const PatchField& exemplar;
+    const Query& query;
+    const CandidateOptions& options;
+    std::size_t values;
+    int across;
+
+    // The sums over the first columns; infinite for places that are left out.
+    std::vector<double> begun(int rows, std::size_t few, const RunContext& ctx) const {
+        std::vector<double> partial(std::size_t(rows) * std::size_t(across),
+                                    std::numeric_limits<double>::infinity());
+        parallelFor(ctx, std::size_t(rows), 4, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                for (int j = 0; j < across; ++j)
+                    if (!isExcluded({int(i), j}, options))
+                        partial[i * std::size_t(across) + std::size_t(j)] =
+                            addDifference(query, 0, few, exemplar.column(int(i), j), exemplar.columnLength(),
+                                          0, std::numeric_limits<double>::infinity());
+        });
+        return partial;
+    }
+    // The whole sum of the place that began best.
+    double bound(const std::vector<double>& partial, std::size_t few) const {
+        const auto best = std::min_element(partial.begin(), partial.end());
+        if (best == partial.end()) return std::numeric_limits<double>::infinity();
+        const auto place = int(best - partial.begin());
+        return finished(place / across, place % across, few, partial,
+                        std::numeric_limits<double>::infinity());
+    }
+    double finished(int i, int j, std::size_t few, const std::vector<double>& partial, double limit) const {
+        const double begun = partial[std::size_t(i) * std::size_t(across) + std::size_t(j)];
+        if (!(begun <= limit) || begun == std::numeric_limits<double>::infinity())
+            return std::numeric_limits<double>::infinity();
+        return addDifference(query, few, query.offset.size(), exemplar.column(i, j), exemplar.columnLength(),
+                             begun, limit);
+    }
+};
+
 }  // namespace
 
 std::vector<PatchCandidate> patchCandidates(const PatchField& exemplar, const PatchOverlap& overlap,
@@ -110,17 +147,19 @@ std::vector<PatchCandidate> patchCandidates(const PatchField& exemplar, const Pa
         throw Error(ErrorCode::Unusable, "a patch is larger than the exemplar; a smaller `patch` fits");
     const std::size_t length = exemplar.columnLength(), values = overlap.columns.size() * length;
     const Query query = queryOf(exemplar, overlap);
-    std::atomic<double> least{std::numeric_limits<double>::infinity()};
+    const Search search{exemplar, query, options, values, across};
+    // The best by a few columns gives a first bound, so that most others are left early.
+    const std::size_t few = std::min(query.offset.size(), std::max<std::size_t>(8, query.offset.size() / 16));
+    const std::vector<double> partial = search.begun(rows, few, ctx);
+    std::atomic<double> least{search.bound(partial, few)};
     std::vector<std::vector<PatchCandidate>> found(static_cast<std::size_t>(rows));
     parallelFor(ctx, std::size_t(rows), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             for (int j = 0; j < across; ++j) {
-                const PatchPlace place{int(i), j};
-                if (isExcluded(place, options)) continue;
                 const double limit = limitOf(least.load(), options.tolerance, values);
-                const double cost = differenceUpTo(query, exemplar.column(place.i, j), length, limit);
-                if (cost > limit) continue;
-                found[i].push_back({place, cost});
+                const double cost = search.finished(int(i), j, few, partial, limit);
+                if (!(cost <= limit)) continue;
+                found[i].push_back({{int(i), j}, cost});
                 lower(least, cost);
             }
     });

@@ -29,7 +29,7 @@ struct EvenSampling {
 /// Points on a surface, spread evenly: drops those that are too near to another, adds some in the middle of
 /// holes up to four spacings wide, then moves all apart within their tangent planes and back on the surface,
 /// by forces that fall to zero at two spacings [turk1992, 4]. Attributes are read through `source`. Points at
-/// the border of an open surface, which have no neighbour within 150 degrees around them, keep their places,
+/// the border of an open surface, whose neighbours leave an angle of 150 degrees free, keep their places,
 /// and nothing is added beyond them. Other sheets, facing another way or a spacing away, do not count.
 /// @param points   [n] finite, near the surface    @param normals  [n] length 1
 /// @param fixed    [n], or empty: other than 0 for points that stay as they are, bit for bit; holes that only
@@ -37,8 +37,8 @@ struct EvenSampling {
 /// @return the points that stay in the order of the input, then those that were added. Points without a
 /// surface near them stay where they are.
 /// @throw Error InvalidOption, ShapeMismatch (arrays of different lengths), Cancelled
-/// @par Cost    O(n), 10 to 20 microseconds for each point that is not fixed and 2 for each of its rounds, on
-/// one
+/// @par Cost    O(n), 10 to 20 microseconds for each point that is not fixed and 2 more a round, on one
+/// core
 /// @par Repeats same bits for any number of threads
 EvenSampling evenSampling(const PointSetSurface& surface, const std::vector<Vec3f>& points,
                           const std::vector<Vec3f>& normals, const std::vector<char>& fixed = {},

@@ -34,10 +34,33 @@ TEST_CASE("dropOutliers: repeats and far points go, the rest stays in order", "[
     cloud.points.push_back({100, 0, 0});
     cloud.points.push_back(before[5]);
     cloud.points.push_back({0, -300, 7});
-    CHECK(dropOutliers(cloud) == 2);
+    CHECK(dropOutliers(cloud).points == 2);
     REQUIRE(cloud.points.size() == before.size());
     for (std::size_t i = 0; i < before.size(); ++i) CHECK(length(cloud.points[i] - before[i]) == 0);
-    CHECK(dropOutliers(cloud) == 0);
+    CHECK(dropOutliers(cloud).points == 0);
+}
+
+TEST_CASE("dropOutliers: small groups away from the others go, larger ones and near ones stay") {
+    PointCloud cloud;
+    for (const Vec3f& p : test::sphereMesh(40, 5).points) cloud.points.push_back(p);
+    const std::size_t ofBall = cloud.points.size();
+    const float spacing = pointSpacing(cloud)[0];
+    const auto addPatch = [&](int side, const Vec3f& corner) {
+        for (int x = 0; x < side; ++x)
+            for (int y = 0; y < side; ++y)
+                cloud.points.push_back(corner + Vec3f{float(x), float(y), 0} * spacing);
+    };
+    const float top = 40 + 4 * spacing;
+    addPatch(5, {300, 0, 0});
+    addPatch(4, {0, 400, 0});
+    addPatch(4, {0, 0, top});    // no gap
+    addPatch(11, {0, 0, -300});  // too large
+    const Outliers outliers = dropOutliers(cloud);
+    REQUIRE(ofBall > 2500);
+    CHECK(outliers.points == 25 + 16);
+    CHECK(outliers.grouped == 25 + 16);
+    CHECK(outliers.groups == 2);
+    CHECK(cloud.points.size() == ofBall + 16 + 121);
 }
 
 TEST_CASE("estimateNormals: of a ball they look outward", "[geometry][property]") {
@@ -76,7 +99,7 @@ TEST_CASE("dropOutliers: points whose squared distance exceeds floats", "[geomet
         const std::vector<Vec3f> before = cloud.points;
         cloud.points.insert(cloud.points.begin() + 3, far.begin(), far.end());
         CAPTURE(far.size(), far[0].x);
-        CHECK(dropOutliers(cloud) == far.size());
+        CHECK(dropOutliers(cloud).points == far.size());
         REQUIRE(cloud.points.size() == before.size());
         for (std::size_t i = 0; i < before.size(); ++i) REQUIRE(length(cloud.points[i] - before[i]) == 0);
     }
@@ -94,6 +117,6 @@ TEST_CASE("dropOutliers, estimateNormals: clouds of any size", "[geometry][prope
             REQUIRE(length(cloud.normals[i] - plain.normals[i]) < 1e-3f);
         cloud.points.push_back({std::ldexp(100.f, power), 0, 0});
         cloud.normals.emplace_back();
-        CHECK(dropOutliers(cloud) == 1);
+        CHECK(dropOutliers(cloud).points == 1);
     }
 }

@@ -15,7 +15,14 @@ constexpr float kUnits = 64;       // of whole costs in a step
 constexpr float kSurface = 0.05f;  // [steps] for a cut through any surface, however well it fits
 constexpr float kLength = 0.005f;  // [steps] for a cut anywhere
 constexpr std::int64_t kForced = std::int64_t(1) << 40;
+constexpr std::size_t kFine = 6000;  // nodes up to which each is a cell of its own
 constexpr std::uint32_t kOutside = 0xffffffffu;
+
+// From a cell to the next one along an axis.
+struct Link {
+    std::uint32_t to = 0;
+    std::int32_t cost = 0;
+};
 
 // The part of a patch that lies over others.
 class Overlap {
@@ -34,11 +41,13 @@ public:
     bool cut() {
         measure();
         if (mMismatch.empty()) return give({});
+        numberCells();
         CutProblem problem;
-        problem.yes.assign(mMismatch.size(), 0);
+        problem.yes.assign(mCells, 0);
         for (int i = 0; i < mNx; ++i)
             for (int j = 0; j < mNy; ++j)
                 if (firstNode(i, j) != kOutside) addColumn(i, j, problem);
+        addEdges(problem);
         return give(leastCostAnswers(problem));
     }
 
@@ -79,8 +88,31 @@ private:
         return std::max(1, std::int32_t(std::lround(kUnits * (apart + surface + kLength))));
     }
 
-    // yes: the node goes to the new patch.
-    void addColumn(int i, int j, CutProblem& problem) const {
+    // Cells of nodes that go to one side together: two along every axis where the overlap is large.
+    void numberCells() {
+        mSide = mMismatch.size() > kFine ? 2 : 1;
+        const int ny = (mNy + mSide - 1) / mSide, nz = (mNz + mSide - 1) / mSide;
+        std::vector<std::uint32_t> table(
+            std::size_t((mNx + mSide - 1) / mSide) * std::size_t(ny) * std::size_t(nz), kOutside);
+        mCell.resize(mMismatch.size());
+        for (int i = 0; i < mNx; ++i)
+            for (int j = 0; j < mNy; ++j) {
+                const std::uint32_t first = firstNode(i, j);
+                if (first == kOutside) continue;
+                for (int k = 0; k < mNz; ++k) {
+                    std::uint32_t& cell =
+                        table[(std::size_t(i / mSide) * std::size_t(ny) + std::size_t(j / mSide)) *
+                                  std::size_t(nz) +
+                              std::size_t(k / mSide)];
+                    if (cell == kOutside) cell = mCells++;
+                    mCell[first + std::uint32_t(k)] = cell;
+                }
+            }
+        for (auto& links : mLinks) links.assign(mCells, Link{});
+    }
+
+    // yes: the cell goes to the new patch. Of a cell with columns of both kinds the old ones decide.
+    void addColumn(int i, int j, CutProblem& problem) {
         const std::uint32_t first = firstNode(i, j);
         bool besideNew = false, besideOld = false;
         for (const auto& [di, dj] : {std::pair{1, 0}, {0, 1}, {-1, 0}, {0, -1}}) {
@@ -91,21 +123,34 @@ private:
             besideNew = besideNew || (inside && (!known || inCore(i + di, j + dj)));
             if (known && inside && !inCore(i + di, j + dj) && (di > 0 || dj > 0))
                 for (int k = 0; k < mNz; ++k)
-                    join(first + std::uint32_t(k), firstNode(i + di, j + dj) + std::uint32_t(k), problem);
+                    join(first + std::uint32_t(k), firstNode(i + di, j + dj) + std::uint32_t(k),
+                         di > 0 ? 0 : 1);
         }
         for (int k = 0; k < mNz; ++k) {
-            if (k + 1 < mNz) join(first + std::uint32_t(k), first + std::uint32_t(k) + 1, problem);
+            if (k + 1 < mNz) join(first + std::uint32_t(k), first + std::uint32_t(k) + 1, 2);
+            std::int64_t& yes = problem.yes[mCell[first + std::uint32_t(k)]];
             if (besideOld)
-                problem.yes[first + std::uint32_t(k)] = kForced;
-            else if (besideNew)
-                problem.yes[first + std::uint32_t(k)] = -kForced;
+                yes = kForced;
+            else if (besideNew && yes == 0)
+                yes = -kForced;
         }
     }
 
-    void join(std::uint32_t a, std::uint32_t b, CutProblem& problem) const {
-        const std::int32_t cost = mMismatch[a] + mMismatch[b];
-        problem.edges.push_back({a, b, cost});
-        problem.edges.push_back({b, a, cost});
+    void join(std::uint32_t a, std::uint32_t b, std::size_t axis) {
+        if (mCell[a] == mCell[b]) return;
+        Link& link = mLinks[axis][mCell[a]];
+        link.to = mCell[b];
+        link.cost += mMismatch[a] + mMismatch[b];
+    }
+
+    void addEdges(CutProblem& problem) const {
+        problem.edges.reserve(std::size_t(6) * mCells);
+        for (std::uint32_t cell = 0; cell < mCells; ++cell)
+            for (const auto& links : mLinks)
+                if (links[cell].cost > 0) {
+                    problem.edges.push_back({cell, links[cell].to, links[cell].cost});
+                    problem.edges.push_back({links[cell].to, cell, links[cell].cost});
+                }
     }
 
     bool give(const std::vector<std::uint8_t>& answers) {
@@ -116,7 +161,8 @@ private:
                 if (column < 0) continue;
                 const std::uint32_t first = firstNode(i, j);
                 for (int k = 0; k < mNz; ++k) {
-                    if (first != kOutside && (answers.empty() || answers[first + std::uint32_t(k)] == 0))
+                    if (first != kOutside &&
+                        (answers.empty() || answers[mCell[first + std::uint32_t(k)]] == 0))
                         continue;
                     mArrangement.label[std::size_t(column) * std::size_t(mNz) + std::size_t(k)] = mNumber;
                     any = true;
@@ -132,6 +178,10 @@ private:
     PatchArrangement& mArrangement;
     std::vector<std::uint32_t> mFirstNode;  // [columns of the patch]
     std::vector<std::int32_t> mMismatch;    // [nodes of the overlap]
+    int mSide = 1;                          // of a cell
+    std::uint32_t mCells = 0;
+    std::vector<std::uint32_t> mCell;  // [nodes of the overlap]
+    std::vector<Link> mLinks[3];       // [axis][cell] to the next cell along it
 };
 
 }  // namespace

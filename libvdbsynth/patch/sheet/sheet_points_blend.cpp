@@ -12,9 +12,10 @@ namespace {
 
 constexpr int kBlendRings = 2;  // of nodes beside a border whose points move
 
-// Rings of nodes whose points the surface at the moved ones depends on: 6.9 spacings, and one more.
+// Rings of nodes whose points the surface at the moved ones depends on: the kernel's reach, and one more.
 int supportRings(const SheetSource& source) {
-    const double reach = 7 * source.exemplar.spacing / source.arrangement.lattice.step;
+    const double reach =
+        3.5 * source.exemplar.kernel * source.exemplar.spacing / source.arrangement.lattice.step;
     return kBlendRings + int(std::ceil(reach)) + 1;
 }
 

@@ -12,6 +12,21 @@
 #include <vector>
 
 namespace vdbsynth {
+namespace {
+
+void sayOutliers(const Outliers& outliers, std::size_t points, const std::string& name,
+                 const RunContext& ctx) {
+    if (outliers.points == 0) return;
+    std::string text = name + ": " + countText(outliers.points, "outlier") + " of " +
+                       countText(points, "point") + " left out";
+    if (outliers.groups > 0)
+        text += ", " + std::to_string(outliers.grouped) + " of them in " +
+                countText(outliers.groups, "small group") + " away from the rest";
+    message(ctx, MessageLevel::Warning, text);
+}
+
+}  // namespace
+
 FloatGridPtr pointsToSolid(const PointCloud& cloud, double voxelSize, double halfWidth,
                            const std::string& name, const SolidOptions& options, const RunContext& ctx) {
     requireOption(std::isfinite(voxelSize) && voxelSize > 0, "voxelSize", std::to_string(voxelSize),
@@ -26,11 +41,7 @@ FloatGridPtr pointsToSolid(const PointCloud& cloud, double voxelSize, double hal
                   "at least a voxel, which is " + std::to_string(voxelSize));
     const WholeVoxels place = wholeVoxels(cloud.origin, voxelSize);
     PointCloud index = cloud;
-    const std::size_t outliers = dropOutliers(index, ctx);
-    if (outliers > 0)
-        message(ctx, MessageLevel::Warning,
-                name + ": " + countText(outliers, "outlier") + " of " +
-                    countText(cloud.points.size(), "point") + " left out");
+    sayOutliers(dropOutliers(index, ctx), cloud.points.size(), name, ctx);
     if (index.points.size() < 8)
         throw Error(ErrorCode::Unusable, name + ": " + countText(index.points.size(), "distinct point") +
                                              " cannot make a surface; 8 are needed");

@@ -47,7 +47,8 @@ PatchFeature featureOf(const std::vector<double>& correlation, int side) {
         if (correlation[high] - correlation[low] > kRise && correlation[l] < correlation[high] - kRise) break;
         if (correlation[l] < correlation[low]) low = high = l;
     }
-    if (correlation[high] - correlation[low] > kRise && high + 1 < count) return {int(high), true};
+    if (correlation[high] - correlation[low] > kRise && correlation[high] > kUncorrelated && high + 1 < count)
+        return {int(high), true};
     for (std::size_t l = 1; l < count; ++l)
         if (correlation[l] < kUncorrelated) return {int(l), false};
     return {std::max(1, side / 2), false};

@@ -75,7 +75,7 @@ void sineOnPlane() {
     BaseOptions options;
     options.radius = kRadius;
     const BaseSurface base = baseSurface(scan, options);
-    const ReliefStatistics s = reliefStatistics(base, {{48, 8, 0}, {144, 56, 64}});
+    const ReliefStatistics s = reliefStatistics(base, {{48, 8, 0}, {143, 55, 63}});  // four whole waves
     const double ratio = kCutOff * kRadius / kWave, g = exponential(-0.69314718056 * ratio * ratio);
     const double wanted = kAmplitude * (1 - g) * (1 - g);
     say("sine_transfer_error", std::abs(s.sq * std::sqrt(2.0) - wanted) / kAmplitude);

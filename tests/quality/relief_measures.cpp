@@ -64,7 +64,7 @@ Heights sampleHeights(const ReliefSource& source, const ReliefOptions& options) 
     return heightsOver(extractRelief(*source.scan, extract).fields);
 }
 
-Heights madeHeights(const LevelSet& made, const LevelSet& target) {
+BaseSurface madeSurface(const LevelSet& made, const LevelSet& target) {
     IndexBox box = solidBox(*made.grid, "made");
     const IndexBox other = solidBox(*target.grid, "target");
     for (int axis = 0; axis < 3; ++axis) {
@@ -77,7 +77,11 @@ Heights madeHeights(const LevelSet& made, const LevelSet& target) {
     base.scan = gatherWideBand(*made.grid, box, {}, kReach, {});
     base.distance.translate(Index3{0, 0, 0} - base.distance.box().min);
     base.scan.translate(Index3{0, 0, 0} - base.scan.box().min);
-    return heightsOver(base);
+    return base;
+}
+
+Heights madeHeights(const LevelSet& made, const LevelSet& target) {
+    return heightsOver(madeSurface(made, target));
 }
 
 double wasserstein(const Heights& a, const Heights& b) {

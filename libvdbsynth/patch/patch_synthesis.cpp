@@ -148,11 +148,77 @@ PatchResult byCuts(const PatchExemplar& exemplar, const PointSetSurface& surface
     result.search = secondsSince(begin);
     begin = std::chrono::steady_clock::now();
     SheetResult made = sheetPoints(exemplar, surface, field, result.arrangement,
-                                   sheetOptionsOf(options, sides.overlap), ctx);
+                                   sheetOptionsOf(options, result.arrangement.overlap), ctx);
     result.warp = secondsSince(begin);
     result.sheet = std::move(made.sheet);
     result.borders = made.borders;
     result.patches = result.arrangement.patches.size();
+    result.sheet = placed(result.sheet, options);
+    return result;
+}
+
+}  // namespace
+
+void validate(const PatchOptions& options) {
+    const auto require = [](bool holds, const char* text) {
+        if (!holds) throw Error(ErrorCode::InvalidOption, text);
+    };
+    require(options.width > 0 && options.depth > 0, "`size` must be above 0");
+    require(options.border >= 0 && options.border < 1e30, "`border` must be at least 0");
+    require(options.patch >= 0, "`patch` must be at least 0");
+    require(options.overlap == 0 || (options.overlap >= 0.05 && options.overlap <= 0.8),
+            "`overlap` must be 0.05..0.8");
+    require(options.tolerance >= 0 && options.tolerance <= 10, "`tolerance` must be 0..10");
+    require(options.step == 0 || (options.step >= 0.5 && options.step <= 64), "`step` must be 0.5..64");
+    require(options.repairs >= 0 && options.repairs <= 20, "`repairs` must be 0..20");
+    PairingOptions pairing;
+    if (options.weights) pairing.weights = *options.weights;
+    pairing.limits = options.limits;
+    pairing.rounds = options.rounds;
+    validate(pairing);
+}
+
+double fieldStep(const PatchExemplar& exemplar, const PatchOptions& options) {
+    constexpr double kLeast = 2, kMostColumns = 72;
+    if (options.step > 0) return options.step * exemplar.spacing;
+    return std::max(kLeast * exemplar.spacing, std::max(exemplar.size.x, exemplar.size.y) / kMostColumns);
+}
+
+PatchResult synthesizePatches(const PatchExemplar& exemplar, const PatchOptions& options,
+                              const RunContext& ctx) {
+    validate(options);
+    const auto begin = std::chrono::steady_clock::now();
+    const bool paper = options.method == PatchMethod::Paper;
+    const PointSetSurface surface =
+        surfaceOf(exemplar, paper ? PointSetKind::AdamsonAlexa : PointSetKind::Apss, ctx);
+    const PatchField field =
+        patchField(surface, exemplar.points, latticeOf(exemplar.size, fieldStep(exemplar, options)), {},
+                   kFieldReach, ctx);
+    const PatchSides sides = sidesOf(field, options, ctx);
+    const double prepared = secondsSince(begin);
+    PatchResult result = paper ? byPaper(exemplar, field, sides, options, ctx)
+                               : byCuts(exemplar, surface, field, sides, options, ctx);
+    result.other += prepared;
+    result.patch = sides.patch * field.lattice.step;
+    result.overlap = sides.overlap * field.lattice.step;
+    result.step = field.lattice.step;
+    return result;
+}
+
+SheetResult repeatPatches(const PatchExemplar& exemplar, const PatchArrangement& arrangement,
+                          const PatchOptions& options, const RunContext& ctx) {
+    validate(options);
+    const PointSetSurface surface = surfaceOf(exemplar, PointSetKind::Apss, ctx);
+    const PatchField field = patchField(
+        surface, exemplar.points, latticeOf(exemplar.size, arrangement.lattice.step), {}, kFieldReach, ctx);
+    for (const LaidPatch& patch : arrangement.patches)
+        if (patch.from.i < 0 || patch.from.j < 0 || patch.from.i + patch.nx > field.lattice.nx ||
+            patch.from.j + patch.ny > field.lattice.ny || field.lattice.nz != arrangement.lattice.nz)
+            throw Error(
+                ErrorCode::ShapeMismatch,
+                "the map's patches reach beyond this exemplar; give one whose box is that of the run's own");
+    SheetResult result =
+        sheetPoints(exemplar, surface, field, arrangement, sheetOptionsOf(options, arrangement.overlap), ctx);
     result.sheet = placed(result.sheet, options);
     return result;
 }

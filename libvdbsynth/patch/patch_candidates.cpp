@@ -158,7 +158,7 @@ std::vector<PatchCandidate> patchCandidates(const PatchField& exemplar, const Pa
             for (int j = 0; j < across; ++j) {
                 const double limit = limitOf(least.load(), options.tolerance, values);
                 const double cost = search.finished(int(i), j, few, partial, limit);
-                if (!(cost <= limit)) continue;
+                if (!(cost <= limit) || std::isinf(cost)) continue;
                 found[i].push_back({{int(i), j}, cost});
                 lower(least, cost);
             }

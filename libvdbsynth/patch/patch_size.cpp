@@ -9,6 +9,7 @@ namespace vdbsynth {
 namespace {
 
 constexpr double kRise = 0.1, kUncorrelated = 0.2;
+constexpr double kFlat = 1e-12;  // [steps^2] the rounding of a mean
 
 // Distances less the mean of their height.
 std::vector<double> centred(const PatchField& field) {
@@ -35,7 +36,7 @@ double product(const std::vector<double>& values, const PatchLattice& l, int di,
     return sum / (double(l.nx - di) * double(l.ny - dj));
 }
 
-PatchFeature featureOf(const std::vector<double>& correlation) {
+PatchFeature featureOf(const std::vector<double>& correlation, int side) {
     const std::size_t count = correlation.size();
     std::size_t low = 1;
     while (low + 1 < count && correlation[low + 1] < correlation[low]) ++low;
@@ -46,10 +47,11 @@ PatchFeature featureOf(const std::vector<double>& correlation) {
         if (correlation[high] - correlation[low] > kRise && correlation[l] < correlation[high] - kRise) break;
         if (correlation[l] < correlation[low]) low = high = l;
     }
-    if (correlation[high] - correlation[low] > kRise && high + 1 < count) return {int(high), true};
+    if (correlation[high] - correlation[low] > kRise && correlation[high] > kUncorrelated && high + 1 < count)
+        return {int(high), true};
     for (std::size_t l = 1; l < count; ++l)
         if (correlation[l] < kUncorrelated) return {int(l), false};
-    return {int(count), false};
+    return {std::max(1, side / 2), false};
 }
 
 }  // namespace
@@ -58,16 +60,16 @@ PatchFeature patchFeature(const PatchField& exemplar, const RunContext& ctx) {
     const std::vector<double> values = centred(exemplar);
     const PatchLattice& l = exemplar.lattice;
     const double whole = product(values, l, 0, 0);
-    if (whole <= 0) return {std::max(1, std::min(l.nx, l.ny) / 2), false};
+    if (whole <= kFlat) return {std::max(1, std::min(l.nx, l.ny) / 2), false};
     PatchFeature feature;
     for (const bool alongX : {true, false}) {
-        const int lags = std::max(2, (alongX ? l.nx : l.ny) * 2 / 3);
+        const int side = alongX ? l.nx : l.ny, lags = std::max(2, side * 2 / 3);
         std::vector<double> correlation(static_cast<std::size_t>(lags));
         parallelFor(ctx, correlation.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t lag = begin; lag < end; ++lag)
                 correlation[lag] = product(values, l, alongX ? int(lag) : 0, alongX ? 0 : int(lag)) / whole;
         });
-        const PatchFeature along = featureOf(correlation);
+        const PatchFeature along = featureOf(correlation, side);
         if (along.columns >= feature.columns) feature = along;
     }
     return feature;

@@ -12,7 +12,8 @@ struct PatchFeature {
 
 /// From the autocorrelation of distances along x and y, the mean of each height left out:
 /// c(l) = sum D(x) D(x + l) / sum D(x)^2, per pair. The period is the first maximum after the first minimum
-/// that rises by at least 0.1, else the first lag at which c falls under 0.2, else half the exemplar.
+/// that rises by at least 0.1, to over 0.2, else the first lag at which c falls under 0.2, else half the
+/// exemplar.
 /// @par Cost    O(nodes x columns of a side)   @par Repeats same bits for any number of threads
 PatchFeature patchFeature(const PatchField& exemplar, const RunContext& ctx = {});
 

@@ -85,7 +85,7 @@ PatchCandidate PatchLayer::choose(const PatchPlace& at, const PatchOverlap& over
         for (const PatchCandidate& candidate : candidates) cost = std::min(cost, candidate.cost);
         return cost;
     };
-    if (!(least() <= mGood * values)) {
+    if (candidates.empty() || !(least() <= mGood * values)) {
         options.excluded.clear();
         candidates = patchCandidates(mExemplar, overlap, options, mContext);
     }

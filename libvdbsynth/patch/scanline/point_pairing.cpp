@@ -2,47 +2,17 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/math/trigonometry.h"
+#include "libvdbsynth/points/point_cells.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <unordered_map>
 
 namespace vdbsynth {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kReach = 3;  // [standard deviations] of theta
-
-// Numbers of points by cells of a given side.
-class Cells {
-public:
-    Cells(const std::vector<Vec3f>& points, double side) : mSide(side) {
-        for (std::size_t p = 0; p < points.size(); ++p)
-            mCells[keyOf(cast<double>(points[p]), 0, 0, 0)].push_back(std::uint32_t(p));
-    }
-
-    // All points that may be within a side of a place, in ascending order of cells, then of numbers.
-    template <typename Visit>
-    void near(const Vec3d& place, const Visit& visit) const {
-        for (int i = -1; i <= 1; ++i)
-            for (int j = -1; j <= 1; ++j)
-                for (int k = -1; k <= 1; ++k)
-                    if (const auto cell = mCells.find(keyOf(place, i, j, k)); cell != mCells.end())
-                        for (const std::uint32_t point : cell->second) visit(point);
-    }
-
-private:
-    std::uint64_t keyOf(const Vec3d& place, int i, int j, int k) const {
-        const auto part = [&](double x, int by) {
-            return std::uint64_t(std::int64_t(std::floor(x / mSide)) + by + (1 << 20)) & 0x1fffff;
-        };
-        return (part(place.x, i) << 42) | (part(place.y, j) << 21) | part(place.z, k);
-    }
-
-    double mSide;
-    std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> mCells;
-};
 
 // Mean length and direction of the pairs around a target.
 struct Coherence {
@@ -154,7 +124,7 @@ private:
     const double mSpacing;
     const PairingOptions& mOptions;
     const double mLeastCosine;
-    const Cells mSourceCells, mTargetCells;
+    const PointCells mSourceCells, mTargetCells;
 };
 
 void requirePoints(const PairingPoints& points) {

@@ -1,11 +1,11 @@
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/patch/sheet/sheet_points_steps.h"
+#include "libvdbsynth/points/point_cells.h"
 #include "libvdbsynth/points/point_set_surface.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <unordered_map>
 
 namespace vdbsynth {
 namespace {
@@ -14,34 +14,24 @@ constexpr std::size_t kWanted = 192;  // centres of a warp, at most
 constexpr double kSameWay = 0.5;      // cosine between normals of both sides
 constexpr double kNearBorder = 1.2;   // [steps] from a border's node to a centre
 
-// Places kept apart from each other, by cells of that side.
+// Places kept apart from each other.
 class Spread {
 public:
-    explicit Spread(double apart) : mApart(apart) {}
+    explicit Spread(double apart) : mApart(apart), mCells(apart) {}
 
     bool add(const Vec3d& place) {
-        for (int i = -1; i <= 1; ++i)
-            for (int j = -1; j <= 1; ++j)
-                for (int k = -1; k <= 1; ++k) {
-                    const auto cell = mCells.find(keyOf(place, i, j, k));
-                    if (cell == mCells.end()) continue;
-                    for (const Vec3d& other : cell->second)
-                        if (length(other - place) < mApart) return false;
-                }
-        mCells[keyOf(place, 0, 0, 0)].push_back(place);
+        if (mCells.anyNear(place,
+                           [&](std::uint32_t other) { return length(mPlaces[other] - place) < mApart; }))
+            return false;
+        mCells.add(place, std::uint32_t(mPlaces.size()));
+        mPlaces.push_back(place);
         return true;
     }
 
 private:
-    std::uint64_t keyOf(const Vec3d& place, int i, int j, int k) const {
-        const auto part = [&](double x, int by) {
-            return std::uint64_t(std::int64_t(std::floor(x / mApart)) + by + (1 << 20)) & 0x1fffff;
-        };
-        return (part(place.x, i) << 42) | (part(place.y, j) << 21) | part(place.z, k);
-    }
-
     double mApart;
-    std::unordered_map<std::uint64_t, std::vector<Vec3d>> mCells;
+    PointCells mCells;
+    std::vector<Vec3d> mPlaces;
 };
 
 class BorderReader {

@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "tests/support/makers.h"
-#include "tests/support/patch_shapes.h"
+#include "tests/support/patch_sources.h"
 
 using namespace vdbsynth;
 
@@ -46,13 +46,20 @@ TEST_CASE("patchMapFrom: none without labels, and damaged ones are refused", "[p
         change(*openvdb::gridPtrCast<openvdb::Int32Grid>(grid));
         return test::thrownBy([&] { patchMapFrom("map.vdb", {grid}); });
     };
-    CHECK(damaged([](openvdb::Int32Grid& grid) { grid.removeMeta("vdbsynth:sheet"); }).code == ErrorCode::BadData);
-    CHECK(damaged([](openvdb::Int32Grid& grid) { grid.removeMeta("vdbsynth:patches"); }).code == ErrorCode::BadData);
-    CHECK(damaged([](openvdb::Int32Grid& grid) { grid.getAccessor().setValue({0, 0, 0}, 100000); }).code == ErrorCode::BadData);
-    CHECK(damaged([](openvdb::Int32Grid& grid) { grid.getAccessor().setValue({0, 0, 0}, -1); }).code == ErrorCode::BadData);
+    CHECK(damaged([](openvdb::Int32Grid& grid) { grid.removeMeta("vdbsynth:sheet"); }).code ==
+          int(ErrorCode::BadData));
+    CHECK(damaged([](openvdb::Int32Grid& grid) { grid.removeMeta("vdbsynth:patches"); }).code ==
+          int(ErrorCode::BadData));
+    CHECK(damaged([](openvdb::Int32Grid& grid) {
+              grid.getAccessor().setValue({0, 0, 0}, 100000);
+          }).code == int(ErrorCode::BadData));
+    CHECK(damaged([](openvdb::Int32Grid& grid) {
+              grid.getAccessor().setValue({0, 0, 0}, -1);
+          }).code == int(ErrorCode::BadData));
 }
 
-TEST_CASE("repeatPatchSheet: a smaller exemplar is refused, the paper's method has no map", "[pipeline][patch]") {
+TEST_CASE("repeatPatchSheet: a smaller exemplar is refused, the paper's method has no map",
+          "[pipeline][patch]") {
     openvdb::initialize();
     const PatchSource source = test::eggCrateSource();
     PatchOptions options;
@@ -61,8 +68,8 @@ TEST_CASE("repeatPatchSheet: a smaller exemplar is refused, the paper's method h
     const auto map = patchMapFrom("map.vdb", {patchMapGrid(source, sheet, options)});
     PatchSource small = source;
     small.exemplar.size.x /= 3;
-    CHECK(test::thrownBy([&] { repeatPatchSheet(small, *map); }).code == ErrorCode::ShapeMismatch);
+    CHECK(test::thrownBy([&] { repeatPatchSheet(small, *map); }).code == int(ErrorCode::ShapeMismatch));
     PatchSheet paper = sheet;
     paper.result.arrangement.patches.clear();
-    CHECK(test::thrownBy([&] { patchMapGrid(source, paper, options); }).code == ErrorCode::Unusable);
+    CHECK(test::thrownBy([&] { patchMapGrid(source, paper, options); }).code == int(ErrorCode::Unusable));
 }

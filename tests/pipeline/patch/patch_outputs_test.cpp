@@ -3,10 +3,11 @@
 #include "libvdbsynth/pipeline/patch/patch.h"
 
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/Interpolation.h>
 #include <catch2/catch.hpp>
 
 #include "tests/support/makers.h"
-#include "tests/support/patch_shapes.h"
+#include "tests/support/patch_sources.h"
 
 using namespace vdbsynth;
 
@@ -29,7 +30,8 @@ TEST_CASE("sheetCloud: the sheet without its border, with what it is a copy of",
     const PatchSheet sheet = crate(source);
     const PointCloud cloud = sheetCloud(source, sheet);
     REQUIRE(cloud.points.size() < sheet.result.sheet.size());
-    const Attribute *number = findAttribute(cloud.attributes, "source"), *patch = findAttribute(cloud.attributes, "patch"),
+    const Attribute *number = findAttribute(cloud.attributes, "source"),
+                    *patch = findAttribute(cloud.attributes, "patch"),
                     *carried = findAttribute(cloud.attributes, "Cd");
     REQUIRE(number);
     REQUIRE(patch);
@@ -48,7 +50,8 @@ TEST_CASE("sheetLevelSet: valid, capped at the sheet's sides, on the points", "[
         const PatchSheet sheet = crate(source);
         const LevelSet model = sheetLevelSet(source, sheet, 1, 3);
         CHECK(model.domainRecorded);
-        const Vec3d size = toPlane(plane, {double(model.domain.size().x), double(model.domain.size().y), double(model.domain.size().z)});
+        const Vec3d size = toPlane(plane, {double(model.domain.size().x), double(model.domain.size().y),
+                                           double(model.domain.size().z)});
         CHECK(size.x == Approx(60).margin(1));
         CHECK(size.y == Approx(48).margin(1));
         const BandQuality quality = measureBand(*model.grid);
@@ -73,7 +76,9 @@ TEST_CASE("sheetLevelSet: same bits for any number of threads", "[pipeline][patc
     RunContext one, three;
     one.threads = 1;
     three.threads = 3;
-    const LevelSet a = sheetLevelSet(source, sheet, 1.5, 3, one), b = sheetLevelSet(source, sheet, 1.5, 3, three);
+    const LevelSet a = sheetLevelSet(source, sheet, 1.5, 3, one),
+                   b = sheetLevelSet(source, sheet, 1.5, 3, three);
     REQUIRE(a.grid->activeVoxelCount() == b.grid->activeVoxelCount());
-    for (auto it = a.grid->cbeginValueOn(); it; ++it) CHECK(b.grid->tree().getValue(it.getCoord()) == it.getValue());
+    for (auto it = a.grid->cbeginValueOn(); it; ++it)
+        CHECK(b.grid->tree().getValue(it.getCoord()) == it.getValue());
 }

@@ -32,7 +32,8 @@ const std::vector<std::string> kBox{"vdbsynth:domain 0,0,0,20,20,8", "vdbsynth:p
 
 }  // namespace
 
-TEST_CASE("loadPatchSource: points with a recorded box keep it, their normals and attributes", "[pipeline][patch]") {
+TEST_CASE("loadPatchSource: points with a recorded box keep it, their normals and attributes",
+          "[pipeline][patch]") {
     openvdb::initialize();
     const test::TemporaryFolder folder;
     PointCloud cloud = plane(20, 8);
@@ -50,7 +51,8 @@ TEST_CASE("loadPatchSource: points with a recorded box keep it, their normals an
     CHECK(source.exemplar.points.size() == cloud.points.size());
     CHECK(source.exemplar.kernel == 2);
     REQUIRE(findAttribute(source.attributes, "Cd"));
-    CHECK(source.exemplar.toWorld(cast<double>(source.exemplar.points[5])).x == Approx(double(cloud.points[5].x)));
+    CHECK(source.exemplar.toWorld(cast<double>(source.exemplar.points[5])).x ==
+          Approx(double(cloud.points[5].x)));
 }
 
 TEST_CASE("loadPatchSource: what a file does not say is guessed and said", "[pipeline][patch]") {
@@ -61,15 +63,15 @@ TEST_CASE("loadPatchSource: what a file does not say is guessed and said", "[pip
     test::Said said;
     PatchSourceOptions options;
     options.margin = 5;
-    const PatchSource source = loadPatchSource(folder.path("bare.ply"), options, said.context());
+    const PatchSource source = loadPatchSource(folder.path("bare.ply"), options, said.ctx);
     CHECK_FALSE(source.recorded);
     CHECK(source.exemplar.size.x == Approx(39 - 10));
-    CHECK(said.has("does not say its box"));
-    CHECK(said.has("taken for a sheet"));
+    CHECK(said.noted("does not say its box"));
+    CHECK(said.noted("taken for a sheet"));
     cloud.normals.clear();
     writePly(folder.path("flat.ply"), cloud, kBox);
-    loadPatchSource(folder.path("flat.ply"), {}, said.context());
-    CHECK(said.has("has no normals"));
+    loadPatchSource(folder.path("flat.ply"), {}, said.ctx);
+    CHECK(said.noted("has no normals"));
 }
 
 TEST_CASE("loadPatchSource: a level set gives points between its caps", "[pipeline][patch]") {
@@ -109,5 +111,5 @@ TEST_CASE("loadPatchSource: says what is wrong", "[pipeline][patch]") {
     cloud.normals.assign(100, {0, 0, 1});
     writePly(folder.path("one.ply"), cloud, {});
     CHECK(test::contains(load("one.ply", {}).message, "coincide"));
-    CHECK(load("nothing.ply", {}).code == ErrorCode::Io);
+    CHECK(load("nothing.ply", {}).code == int(ErrorCode::Io));
 }

@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/support/makers.h"
-#include "tests/support/patch_shapes.h"
+#include "tests/support/patch_sources.h"
 #include "tests/support/said.h"
 
 using namespace vdbsynth;
@@ -35,13 +35,14 @@ TEST_CASE("makePatchSheet: a tile is a whole number of steps, said", "[pipeline]
     options.depth = 50;
     options.tile = true;
     test::Said said;
-    const PatchSheet sheet = makePatchSheet(source, options, said.context());
+    const PatchSheet sheet = makePatchSheet(source, options, said.ctx);
     const double step = sheet.result.step;
     CHECK(std::abs(sheet.width / step - std::round(sheet.width / step)) < 1e-9);
-    CHECK(said.has("to tile"));
+    CHECK(said.noted("to tile"));
 }
 
 TEST_CASE("makePatchSheet: a bad option is refused before any work", "[pipeline][patch]") {
     PatchOptions options;
-    CHECK(test::contains(test::thrownBy([&] { makePatchSheet(test::eggCrateSource(), options); }).message, "`size`"));
+    CHECK(test::contains(test::thrownBy([&] { makePatchSheet(test::eggCrateSource(), options); }).message,
+                         "`size`"));
 }

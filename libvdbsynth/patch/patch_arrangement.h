@@ -21,6 +21,7 @@ struct PatchArrangement {
     static constexpr std::int32_t kNone = -1;
 
     PatchLattice lattice;  ///< of the sheet, with the exemplar's step and height
+    int overlap = 1;       ///< [columns] that patches reach over earlier ones; warps fade within it
     bool tile = false;     ///< the sheet continues at its opposite side
     std::vector<LaidPatch> patches;
     std::vector<std::int32_t> label;  ///< [nodes] patch, kNone where nothing lies yet; whole columns of it

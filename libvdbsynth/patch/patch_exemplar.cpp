@@ -32,7 +32,7 @@ Vec3d fromPlane(PatchPlane plane, const Vec3d& place) {
 }
 
 PatchExemplar patchExemplar(const std::vector<Vec3f>& points, const std::vector<Vec3f>& normals,
-                            const PatchBox& box, PatchPlane plane, double spacing) {
+                            const PatchBox& box, PatchPlane plane, double spacing, bool fitHeight) {
     if (points.size() != normals.size())
         throw Error(ErrorCode::ShapeMismatch, "the texture's points and normals differ in number");
     if (!(spacing > 0)) throw Error(ErrorCode::InvalidOption, "the points' spacing must be above 0");
@@ -51,8 +51,8 @@ PatchExemplar patchExemplar(const std::vector<Vec3f>& points, const std::vector<
         high.z = std::max(high.z, place.z);
     }
     if (inside == 0) throw Error(ErrorCode::EmptyInput, "no point lies in the texture's box");
-    low.z = std::min(given.x, low.z - kAbove * spacing);
-    high.z = std::max(given.y, high.z + kAbove * spacing);
+    low.z = fitHeight ? std::min(given.x, low.z - kAbove * spacing) : given.x;
+    high.z = fitHeight ? std::max(given.y, high.z + kAbove * spacing) : given.y;
     PatchExemplar exemplar;
     exemplar.size = high - low;
     exemplar.spacing = spacing;

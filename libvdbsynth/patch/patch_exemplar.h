@@ -40,12 +40,13 @@ struct PatchBox {
 
 /// @param points, normals  world space, finite; normals of any length over 0
 /// @param spacing  [world] of the points, over 0
-/// Along the height the box is made larger where it does not hold all points and two spacings beyond them.
+/// @param fitHeight  along the height the box is made larger where it does not hold all points and two
+/// spacings beyond them
 /// @throw Error ShapeMismatch (other number of normals), EmptyInput (no point in the box), InvalidOption (an
 /// empty box, a spacing that is not above 0)
 /// @par Cost    O(points)   @par Repeats yes
 PatchExemplar patchExemplar(const std::vector<Vec3f>& points, const std::vector<Vec3f>& normals,
-                            const PatchBox& box, PatchPlane plane, double spacing);
+                            const PatchBox& box, PatchPlane plane, double spacing, bool fitHeight = true);
 
 /// The kernel that suits points: 2, or 1 where over a twentieth of them lie on thin parts, with a point that
 /// faces the other way among their 48 nearest and within 6 spacings: wide kernels mix both sides there.

@@ -148,7 +148,7 @@ PatchResult byCuts(const PatchExemplar& exemplar, const PointSetSurface& surface
     result.search = secondsSince(begin);
     begin = std::chrono::steady_clock::now();
     SheetResult made = sheetPoints(exemplar, surface, field, result.arrangement,
-                                   sheetOptionsOf(options, sides.overlap), ctx);
+                                   sheetOptionsOf(options, result.arrangement.overlap), ctx);
     result.warp = secondsSince(begin);
     result.sheet = std::move(made.sheet);
     result.borders = made.borders;
@@ -211,18 +211,14 @@ SheetResult repeatPatches(const PatchExemplar& exemplar, const PatchArrangement&
     const PointSetSurface surface = surfaceOf(exemplar, PointSetKind::Apss, ctx);
     const PatchField field = patchField(
         surface, exemplar.points, latticeOf(exemplar.size, arrangement.lattice.step), {}, kFieldReach, ctx);
-    int overlap = 1;
-    for (const LaidPatch& patch : arrangement.patches) {
+    for (const LaidPatch& patch : arrangement.patches)
         if (patch.from.i < 0 || patch.from.j < 0 || patch.from.i + patch.nx > field.lattice.nx ||
             patch.from.j + patch.ny > field.lattice.ny || field.lattice.nz != arrangement.lattice.nz)
             throw Error(
                 ErrorCode::ShapeMismatch,
                 "the map's patches reach beyond this exemplar; give one whose box is that of the run's own");
-        overlap = std::max(overlap,
-                           int(std::lround((options.overlap > 0 ? options.overlap : kOverlap) * patch.nx)));
-    }
     SheetResult result =
-        sheetPoints(exemplar, surface, field, arrangement, sheetOptionsOf(options, overlap), ctx);
+        sheetPoints(exemplar, surface, field, arrangement, sheetOptionsOf(options, arrangement.overlap), ctx);
     result.sheet = placed(result.sheet, options);
     return result;
 }

@@ -32,7 +32,9 @@ double largestBaseRadius(double longest);
 /// @param scan     as baseSurface, with baseMargin(largestBaseRadius(longest)) around a whole object
 /// @param longest  side of the object or texture [voxels]
 /// @throw Error EmptyInput (no surface), InvalidOption (`longest` under 1), Memory, Cancelled
-/// @par Cost    as three bases of 2 voxels   @par Repeats same bits for any number of threads
+/// @par Cost    distances once, to 5 radii of the widest lattice's; means of every radius on lattices of
+///              about 1.4 samples a radius, so that all radii over 6 voxels cost less than the first
+/// @par Repeats same bits for any number of threads
 BaseScale findBaseRadius(const BrickField& scan, double longest, float band = 3, const RunContext& ctx = {});
 
 }  // namespace vdbsynth

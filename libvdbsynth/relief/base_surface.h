@@ -61,7 +61,9 @@ struct BaseSurface {
 /// @param scan  distances [voxels] in a box that begins at 0: a whole object with baseMargin(radius) of void
 ///              around, or a texture that continues beyond the box as its last layer does
 /// @throw Error InvalidOption, EmptyInput (no surface; no base is left), Memory, Cancelled
-/// @par Cost    O(voxels within 5 radii of the surface * radius / step^4), step being that of the lattice
+/// @par Cost    O(voxels within 5 radii of the surface * radius / step^4) for means, step being that of the
+///              lattice; distances before and after O(voxels within 5 radii / 8), a fifth of a microsecond
+///              each and core, twice
 /// @par Repeats same bits for any number of threads
 BaseSurface baseSurface(const BrickField& scan, const BaseOptions& options = {}, const RunContext& ctx = {});
 

@@ -22,6 +22,12 @@ int smoothingStep(double radius);
 /// The samples of a lattice that cover a box which begins at 0.
 IndexBox latticeBox(const IndexBox& box, int step);
 
+/// Distances without signs [voxels] to the zero level of a field, on every step-th voxel of a box around the
+/// lattice, at most `reach`: the first part of widenedDistances.
+/// @param known  [voxels] where the field's own distances end
+BrickField unsignedDistances(const BrickField& field, int step, float known, float reach,
+                             const RunContext& ctx);
+
 /// Distances of a field whose zero level is meant, on every step-th voxel, clamped to -reach..reach [voxels].
 /// The nearest points of the surface start from the samples within 1.5 samples of it, and spread through the
 /// bricks by sweeps until none changes [danielsson1980]: distances to points that lie closer than samples, so

@@ -15,6 +15,7 @@ constexpr float kLeastStep = 0.4f;  // [voxels] along a line: thinner sheets of 
 constexpr float kSteepest = 0.25f;  // cosine of the angle against the base from which it folds
 constexpr float kFollows = 0.7f;    // share of the way that the base's distance has to grow by
 constexpr float kLeastSlope = 0.05f;
+constexpr float kMostMissed = 0.3f;  // [voxels] that cubic polynomials may move a height by
 
 // Where a line meets the scan.
 struct Crossing {
@@ -76,6 +77,37 @@ void walk(const Line& line, float direction, std::vector<Crossing>& found) {
     }
 }
 
+// What a cubic polynomial (Catmull-Rom) says of a field at a point. Trilinear values cut crests: a wave of
+// length w loses (pi / w)^2 / 2 of its amplitude between samples.
+float sampleCubic(const BrickField& field, const Vec3f& p) {
+    Index3 first;
+    float weight[3][4];
+    for (int axis = 0; axis < 3; ++axis) {
+        const float low = std::floor(p[axis]), t = p[axis] - low;
+        first[axis] = int(low) - 1;
+        weight[axis][0] = ((2 - t) * t - 1) * t / 2;
+        weight[axis][1] = ((3 * t - 5) * t * t + 2) / 2;
+        weight[axis][2] = ((4 - 3 * t) * t + 1) * t / 2;
+        weight[axis][3] = (t - 1) * t * t / 2;
+    }
+    float values[64], sum = 0;
+    field.readBox(first, {4, 4, 4}, values);
+    const float* v = values;
+    for (const float x : weight[0])
+        for (const float y : weight[1]) {
+            sum += x * y *
+                   (weight[2][0] * v[0] + weight[2][1] * v[1] + weight[2][2] * v[2] + weight[2][3] * v[3]);
+            v += 4;
+        }
+    return sum;
+}
+
+// What the height misses as both surfaces were met between samples by trilinear values.
+float missedHeight(const BaseSurface& base, const Vec3f& foot, const Vec3f& met, float slope) {
+    const float missed = sampleCubic(base.distance, foot) - sampleCubic(base.scan, met) / slope;
+    return std::clamp(missed, -kMostMissed, kMostMissed);
+}
+
 Vec3f nearestOfScan(const BaseSurface& base, const Vec3f& foot) {
     Vec3f p = projectToSurface(base.scan, foot);
     if (std::abs(sampleTrilinear(base.scan, p)) > 0.1f) p = projectToSurface(base.scan, p);
@@ -100,6 +132,7 @@ ReliefPoint reliefAt(const BaseSurface& base, const Vec3f& foot, const Vec3f& no
         point.slope = dot(normalized(sampleGradient(base.scan, line.at(best->place))), normal);
     }
     point.folds = point.lost || found.size() > 1 || point.slope < kSteepest;
+    if (!point.folds) point.height += missedHeight(base, foot, line.at(best->place), point.slope);
     point.slope = std::max(point.slope, kLeastSlope);
     if (point.folds) {
         point.vector = nearestOfScan(base, foot);

@@ -21,7 +21,8 @@ struct ReliefPoint {
 /// The height is where the line through a point of the base, along its normal, meets the scan's surface from
 /// inside: the nearest such place on either side, as far as the base's distances follow the line, so that the
 /// other side of a thin wall is none. It folds where the line meets the surface several times, and where
-/// the surface is steeper than 75 degrees against the base.
+/// the surface is steeper than 75 degrees against the base. Where it does not fold both surfaces are read by
+/// cubic polynomials, as trilinear values cut the crests of short waves.
 /// @param foot    on the base [voxels]   @param normal  of length 1, outward
 /// @par Cost    about ten reads of both fields
 ReliefPoint reliefAt(const BaseSurface& base, const Vec3f& foot, const Vec3f& normal);

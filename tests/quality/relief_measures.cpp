@@ -30,17 +30,18 @@ Heights heightsOver(const BaseSurface& base) {
     return heights;
 }
 
-// A picture's heights [voxels] over a plane, to first order.
-BaseSurface overPlane(const ReliefSource& source, double high) {
+// A picture's heights [voxels] over a plane, to first order, a texel `texel` voxels wide.
+BaseSurface overPlane(const ReliefSource& source, double texel, double high) {
     const SampleImage& image = source.heights;
     double mean = 0;
     for (float v : image.values) mean += double(v) / double(image.texels());
     const auto at = [&](int x, int y) {
-        x = std::clamp(x, 0, image.width - 1), y = std::clamp(y, 0, image.height - 1);
-        return float((double(image.values[std::size_t(y * image.width + x)]) - mean) * high);
+        float value = 0;
+        readCubic(image, {float((x + 0.5) / texel), float((y + 0.5) / texel)}, &value);
+        return float((double(value) - mean) * high);
     };
     const float reach = float(high) + 3, middle = std::ceil(reach) + 2;
-    const Index3 size{std::min(image.width, 256), std::min(image.height, 256), int(2 * middle)};
+    const Index3 size{int(image.width * texel), int(image.height * texel), int(2 * middle)};
     BaseSurface base;
     base.reach = reach;
     base.distance = test::fieldFrom(
@@ -57,14 +58,14 @@ BaseSurface overPlane(const ReliefSource& source, double high) {
 }  // namespace
 
 Heights sampleHeights(const ReliefSource& source, const ReliefOptions& options) {
-    if (!source.scan) return heightsOver(overPlane(source, kPictureHeight * options.scale));
+    if (!source.scan) return heightsOver(overPlane(source, options.scale, kPictureHeight * options.scale));
     ReliefExtractOptions extract;
     extract.base = options.base;
     extract.baseRadius = options.baseRadius;
     return heightsOver(extractRelief(*source.scan, extract).fields);
 }
 
-Heights madeHeights(const LevelSet& made, const LevelSet& target) {
+BaseSurface madeSurface(const LevelSet& made, const LevelSet& target) {
     IndexBox box = solidBox(*made.grid, "made");
     const IndexBox other = solidBox(*target.grid, "target");
     for (int axis = 0; axis < 3; ++axis) {
@@ -77,7 +78,11 @@ Heights madeHeights(const LevelSet& made, const LevelSet& target) {
     base.scan = gatherWideBand(*made.grid, box, {}, kReach, {});
     base.distance.translate(Index3{0, 0, 0} - base.distance.box().min);
     base.scan.translate(Index3{0, 0, 0} - base.scan.box().min);
-    return heightsOver(base);
+    return base;
+}
+
+Heights madeHeights(const LevelSet& made, const LevelSet& target) {
+    return heightsOver(madeSurface(made, target));
 }
 
 double wasserstein(const Heights& a, const Heights& b) {

@@ -16,7 +16,9 @@ struct Heights {
 /// A sample's: of a picture over a plane, of a scan over its base.
 Heights sampleHeights(const ReliefSource& source, const ReliefOptions& options);
 
-/// A result's over its target.
+/// A result's surface over its target.
+BaseSurface madeSurface(const LevelSet& made, const LevelSet& target);
+/// Its heights.
 Heights madeHeights(const LevelSet& made, const LevelSet& target);
 
 /// Mean distance between two distributions of heights about their means [voxels].

@@ -1,6 +1,6 @@
 // What relief gives, in numbers, a line each: NAME VALUE...
 //   relief_quality right                                      answers that are known
-//   relief_quality statistics SAMPLE TARGET [--base-radius R] [--whole-sample] [--resolution N]
+//   relief_quality statistics SAMPLE TARGET [--base-radius R] [--whole-sample] [--resolution N] [--scale S]
 //   relief_quality mismatch                                   the default beside the exhaustive method
 // tests/quality/reliefs.py runs it for the tables of docs/relief.md.
 #include "tests/quality/relief_measures.h"
@@ -22,7 +22,7 @@ namespace {
 
 struct Arguments {
     std::vector<std::string> paths;
-    double baseRadius = 0;
+    double baseRadius = 0, scale = 1;
     bool wholeSample = false;
     int resolution = 128;
 };
@@ -57,6 +57,7 @@ void statistics(const Arguments& arguments) {
     ReliefOptions options;
     options.baseRadius = arguments.baseRadius;
     options.wholeSample = arguments.wholeSample;
+    options.scale = arguments.scale;
     const auto start = std::chrono::steady_clock::now();
     const ReliefResult result = transferRelief({source}, target, {}, options);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -83,6 +84,7 @@ int main(int count, char** words) try {
         } else if (word.rfind("--", 0) == 0 && i + 1 < count) {
             const double value = std::atof(words[++i]);
             if (word == "--base-radius") arguments.baseRadius = value;
+            if (word == "--scale") arguments.scale = value;
             if (word == "--resolution") arguments.resolution = int(value);
         } else {
             arguments.paths.push_back(word);

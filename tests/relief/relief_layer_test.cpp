@@ -38,6 +38,13 @@ TEST_CASE("reliefAt: a raised plane is as high as it was raised", "[relief][fast
     }
 }
 
+TEST_CASE("reliefAt: a crest between samples keeps its height", "[relief][oracle]") {
+    const BrickField scan = test::groundField(
+        {24, 16, 32}, [](double x, double) { return sine(2 * kPi * (x - 6.5) / 12 + kPi / 2); });
+    // Trilinear values say 0.966.
+    CHECK(reliefAt(flatBase(scan), {6.5f, 8.5f, 16}, kUp).height == Approx(1).margin(0.005));
+}
+
 TEST_CASE("reliefAt: under an overhang the relief is a vector", "[relief][fast]") {
     // Solid below 16 and a bar from 19 to 21 above it.
     const BrickField scan = test::fieldFrom({16, 16, 32}, [](const Index3& p) {

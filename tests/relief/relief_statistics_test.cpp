@@ -39,6 +39,21 @@ TEST_CASE("reliefStatistics: a sine has the numbers of the formula within one pe
     CHECK(s.lost == 0);
 }
 
+TEST_CASE("reliefStatistics: a sine over its own base has the transfer function's within one percent",
+          "[relief][oracle]") {
+    constexpr double kWave = 24, kRadius = 6;
+    BaseOptions options;
+    options.radius = kRadius;
+    const BaseSurface base = baseSurface(test::waveField({192, 32, 64}, kWave, kWave / 40), options);
+    const ReliefStatistics s = reliefStatistics(base, {{48, 8, 0}, {143, 23, 63}});
+    const double ratio = kCutOff * kRadius / kWave, g = exponential(-0.69314718056 * ratio * ratio);
+    const double amplitude = kWave / 40 * (1 - g) * (1 - g);
+    CHECK(s.sa == Approx(2 * amplitude / kPi).epsilon(0.01));
+    CHECK(s.sq == Approx(amplitude / std::sqrt(2.0)).epsilon(0.01));
+    CHECK(s.sku == Approx(1.5).epsilon(0.01));
+    CHECK(s.sq * std::sqrt(2.0) == Approx(amplitude).margin(0.002 * kWave / 40));
+}
+
 TEST_CASE("reliefStatistics: an egg-crate has the numbers of the formula", "[relief][oracle]") {
     const double amplitude = 1.2;
     const ReliefStatistics s =

@@ -1,10 +1,11 @@
 #include "tools/vdb_synth/command.h"
+#include "tools/vdb_synth/patch_files.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
-#include "libvdbsynth/io/textured_mesh.h"
 #include "libvdbsynth/pipeline/convert/outputs.h"
 #include "libvdbsynth/pipeline/patch/patch.h"
+#include "libvdbsynth/pipeline/patch/patch_map.h"
 
 #include <nlohmann/json.hpp>
 
@@ -86,32 +87,6 @@ void setSize(const Arguments& arguments, const PatchExemplar& exemplar, PatchOpt
     options.depth = sizes[1].multiple ? sizes[1].value * exemplar.size.y : sizes[1].value;
 }
 
-bool isPly(const std::string& path) {
-    return takesPoints(path);
-}
-
-void writeAll(Run& run, const PatchSource& source, const PatchSheet& sheet) {
-    std::vector<std::string> models;
-    for (const std::string& path : run.outputPaths()) {
-        if (!isPly(path)) {
-            models.push_back(path);
-            continue;
-        }
-        const PointCloud cloud = sheetCloud(source, sheet);
-        run.count("points", cloud.points.size());
-        writePly(run.outputs().add(path), cloud, {});
-    }
-    if (models.empty()) return;
-    const Arguments& arguments = run.arguments;
-    const double voxelSize = arguments.has("voxel-size") ? arguments.real("voxel-size") : source.voxelSize;
-    const LevelSet model = sheetLevelSet(source, sheet, voxelSize, arguments.real("half-width"), run.context);
-    ModelOutputOptions outputs;
-    outputs.adaptivity = arguments.real("adaptivity");
-    outputs.metadata = run.metadata();
-    writeModel(model, models, outputs, run.outputs(), run.context);
-    run.describe(model);
-}
-
 void report(Run& run, const PatchSource& source, const PatchSheet& sheet) {
     const PatchResult& result = sheet.result;
     run.count("points_in", source.exemplar.points.size());
@@ -158,6 +133,10 @@ void patch(Run& run) {
     const PatchSourceOptions sourceOptions = sourceOptionsOf(run);
     const std::vector<std::string> paths = run.outputPaths();
     requireOutputPaths(paths);
+    if (arguments.has("source-map") && options.method == PatchMethod::Paper)
+        throw Error(
+            ErrorCode::InvalidOption,
+            "--source-map: has no effect with --method paper; the points' `source` says where each is from");
     requireModelPath(arguments.inputs[0]);
     run.reserveOutputs();
     const PatchSource source = loadPatchSource(arguments.inputs[0], sourceOptions, run.context);
@@ -166,7 +145,10 @@ void patch(Run& run) {
     if (arguments.has("draft") && !arguments.has("field-step"))
         options.step = kDraftStep * fieldStep(source.exemplar, options) / source.exemplar.spacing;
     const PatchSheet sheet = makePatchSheet(source, options, run.context);
-    writeAll(run, source, sheet);
+    writeSheet(run, source, sheet);
+    if (arguments.has("source-map"))
+        writeVdb(run.outputs().add(arguments.text("source-map")), {patchMapGrid(source, sheet, options)},
+                 run.metadata());
     report(run, source, sheet);
     run.finish();
 }

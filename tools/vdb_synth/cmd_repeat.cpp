@@ -1,5 +1,6 @@
 #include "tools/vdb_synth/carry_options.h"
 #include "tools/vdb_synth/command.h"
+#include "tools/vdb_synth/patch_files.h"
 #include "tools/vdb_synth/texture_files.h"
 
 #include "libvdbsynth/base/error.h"
@@ -132,8 +133,9 @@ void repeat(Run& run) {
     options.carried = attributeValues(run.arguments);
     if (run.arguments.has("half-width")) options.halfWidth = float(run.modelOptions().halfWidth);
     const VdbContents contents = readVdb(mapPath, run.context);
-    const SourceMap map = sourceMapFrom(mapPath, contents.grids, run.context);
     run.noteInput(mapPath);
+    if (const auto patches = patchMapFrom(mapPath, contents.grids)) return repeatPatchMap(run, *patches);
+    const SourceMap map = sourceMapFrom(mapPath, contents.grids, run.context);
     if (run.arguments.inputs.size() - 1 != map.inputs())
         throw Error(ErrorCode::ShapeMismatch,
                     mapPath + ": repeat this map as: repeat MAP" + wanted(map) + "; " +

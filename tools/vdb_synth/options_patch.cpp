@@ -68,6 +68,9 @@ std::vector<Option> sheetTable() {
                   ".3mf mesh; .png, .exr heights")
             .repeatable()
             .takenBy(kPatch),
+        output("source-map", "FILE.vdb", {"vdb"})
+            .says("write which patch every place is from, for repeat, of --method default")
+            .takenBy(kPatch),
         real("margin", "W", 0)
             .in(Group::Input)
             .measuredIn(Unit::World)

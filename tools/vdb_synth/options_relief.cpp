@@ -23,7 +23,7 @@ std::vector<Option> reliefOptionTable() {
         real("top", "P", 0, 100)
             .in(Group::Method)
             .says("percent of the sample's vertices among which the paper's method draws")
-            .initially("0.1")
+            .initially("0.02")
             .takenBy(relief),
         flag("whole-sample")
             .in(Group::Controls)

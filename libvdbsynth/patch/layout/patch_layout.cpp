@@ -165,6 +165,7 @@ PatchArrangement layPatches(const PatchField& exemplar, int nx, int ny, const La
     requireLayout(exemplar, nx, ny, options);
     PatchArrangement arrangement;
     arrangement.lattice = {exemplar.lattice.step, nx, ny, exemplar.lattice.nz};
+    arrangement.overlap = options.overlap;
     arrangement.tile = options.tile;
     requireMemory(ctx, 4.0 * double(arrangement.lattice.nodes()), "the sheet's map",
                   "a smaller `size` needs less");

@@ -188,7 +188,9 @@ PatchSource loadPatchSource(const std::string& path, const PatchSourceOptions& o
     PatchSource source;
     source.recorded = content.box.has_value();
     PatchBox box = content.bounds;
-    if (content.box) {
+    if (options.box) {
+        box = {options.box->min - content.origin, options.box->max - content.origin};
+    } else if (content.box) {
         box = *content.box;
     } else {
         const double margin = options.margin ? *options.margin
@@ -200,7 +202,7 @@ PatchSource loadPatchSource(const std::string& path, const PatchSourceOptions& o
                 path + ": does not say its box; its bounds less a margin of " + roundedText(margin, 4) +
                     " (world) are taken, `margin` says another");
     }
-    source.exemplar = patchExemplar(content.points, content.normals, box, plane, spacing);
+    source.exemplar = patchExemplar(content.points, content.normals, box, plane, spacing, !options.box);
     source.exemplar.kernel = fittingKernel(source.exemplar.points, source.exemplar.normals, spacing, ctx);
     source.exemplar.corner = source.exemplar.corner + content.origin;
     source.attributes = std::move(content.attributes);

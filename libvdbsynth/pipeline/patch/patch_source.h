@@ -16,6 +16,7 @@ struct PatchSourceOptions {
     /// none:
     /// a third of a patch, of level sets what fields read beyond the box, 7 spacings.
     std::optional<double> margin;
+    std::optional<PatchBox> box;  ///< [world] the texture's, height included; the file's is not read then
 };
 
 /// @throw Error InvalidOption (a field out of its range)

@@ -47,7 +47,7 @@ struct ReliefOptions {
     CoordinateOptions synthesis;                       ///< of the default method
     double neighbourhood =
         0;              ///< [world of the target] radius, of the paper's method; 0: as GrownReliefOptions
-    double top = 0.1;   ///< [percent] eta of the paper's method
+    double top = 0.02;  ///< [percent] eta of the paper's method
     GridConstPtr mask;  ///< 0..1 over the target, by which strength is multiplied; null: 1
     const LevelSet* maskModel = nullptr;  ///< relief only inside; null: everywhere
     std::string maskAttribute;  ///< name of a grid among the target's attributes, painted 0..1 (of a colour

@@ -6,6 +6,7 @@
 #include "tests/relief/relief_shapes.h"
 #include "tests/support/contexts.h"
 #include "tests/support/makers.h"
+#include "tests/support/own_base.h"
 
 #include <catch2/catch.hpp>
 
@@ -68,6 +69,31 @@ double heightOver(const BrickField& field, int x, int y) {
 }
 
 }  // namespace
+
+TEST_CASE("relief on its own base: the scan again, to a tenth of a voxel") {
+    // Bumps of one and a half voxels on a ball, charts of which overlap.
+    const BrickField scan = test::fieldFrom({109, 109, 109}, [](const Index3& q) {
+        const Vec3d p{q.x - 54., q.y - 54., q.z - 54.};
+        const double r = length(p);
+        if (r < 15) return -3.f;
+        const Vec3d n = p * (1 / r);
+        const double bumps = sine(9 * n.x) * sine(9 * n.y + 1) * sine(9 * n.z + 2);
+        return float(std::clamp((r - 30 - 1.6 * bumps) / 1.1, -3.0, 3.0));
+    });
+    BaseOptions options;
+    options.radius = 5;
+    options.reach = 8;
+    ReliefSampleOptions whole;
+    whole.rough = 0;
+    const auto base = std::make_shared<const BaseSurface>(baseSurface(scan, options));
+    const std::vector<ReliefSample> samples{reliefSample(base, nullptr, whole)};
+    REQUIRE(samples.front().charts > 1);
+    const ReliefTarget target = test::ownBase(samples.front());
+    const BrickField made = reliefOnTarget(target, samples, test::identityMap(target, samples.front()));
+    CHECK(test::surfaceError(made, base->scan).rms < 0.1);
+    CHECK(test::surfaceError(base->scan, made).rms < 0.1);
+    CHECK(test::surfaceError(base->distance, base->scan).rms > 0.3);  // without relief
+}
 
 TEST_CASE("relief on a plane: waves along the direction, as high as the sample's") {
     ReliefTarget target = ground();

@@ -1,0 +1,57 @@
+#include "tools/vdb_synth/patch_files.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/io/textured_mesh.h"
+#include "libvdbsynth/pipeline/convert/outputs.h"
+#include "libvdbsynth/pipeline/patch/patch_map.h"
+
+#include <nlohmann/json.hpp>
+
+namespace vdbsynth::cli {
+
+void writeSheet(Run& run, const PatchSource& source, const PatchSheet& sheet) {
+    std::vector<std::string> models;
+    for (const std::string& path : run.outputPaths()) {
+        if (!takesPoints(path)) {
+            models.push_back(path);
+            continue;
+        }
+        const PointCloud cloud = sheetCloud(source, sheet);
+        run.count("points", cloud.points.size());
+        writePly(run.outputs().add(path), cloud, {});
+    }
+    if (models.empty()) return;
+    if (!source.attributes.empty())
+        message(run.context, MessageLevel::Note,
+                models.front() + ": has no place for " + source.attributes.front().name +
+                    (source.attributes.size() > 1 ? " and others" : "") +
+                    " of the exemplar; a .ply carries them, and convert SHEET.ply makes any other file of that");
+    const Arguments& arguments = run.arguments;
+    const double voxelSize = arguments.has("voxel-size") ? arguments.real("voxel-size") : source.voxelSize;
+    const LevelSet model = sheetLevelSet(source, sheet, voxelSize, run.modelOptions().halfWidth, run.context);
+    ModelOutputOptions outputs;
+    outputs.adaptivity = arguments.real("adaptivity");
+    outputs.metadata = run.metadata();
+    writeModel(model, models, outputs, run.outputs(), run.context);
+    run.describe(model);
+}
+
+void repeatPatchMap(Run& run, const PatchMapFile& map) {
+    const std::vector<std::string>& inputs = run.arguments.inputs;
+    if (inputs.size() != 2)
+        throw Error(ErrorCode::ShapeMismatch, inputs[0] + ": repeat this map as: repeat MAP EXEMPLAR");
+    requireOutputPaths(run.outputPaths());
+    run.reserveOutputs();
+    PatchSourceOptions options;
+    options.model = run.modelOptions();
+    options.plane = map.plane;
+    options.box = map.box;
+    const PatchSource source = loadPatchSource(inputs[1], options, run.context);
+    run.noteInput(inputs[1]);
+    const PatchSheet sheet = repeatPatchSheet(source, map, run.context);
+    writeSheet(run, source, sheet);
+    run.count("patches", sheet.result.patches);
+    run.finish();
+}
+
+}  // namespace vdbsynth::cli

@@ -1,4 +1,4 @@
-#!/ usr / bin / python3
+#!/usr/bin/python3
 """Makes more of every exemplar of a fixed set and measures how good it is by `vdb_synth compare`: prints a table, writes
 quality.json, the pages of compare and a contact sheet (quality.png).
 Usage: quality.py BUILD_FOLDER [--seeds N] [--size X,Y,Z] [--synth "OPTIONS"] [--name NAME] [EXEMPLAR...]

@@ -182,8 +182,12 @@ void validate(const PatchOptions& options) {
 
 double fieldStep(const PatchExemplar& exemplar, const PatchOptions& options) {
     constexpr double kLeast = 2, kMostColumns = 72;
-    if (options.step > 0) return options.step * exemplar.spacing;
-    return std::max(kLeast * exemplar.spacing, std::max(exemplar.size.x, exemplar.size.y) / kMostColumns);
+    const double step =
+        options.step > 0
+            ? options.step * exemplar.spacing
+            : std::max(kLeast * exemplar.spacing, std::max(exemplar.size.x, exemplar.size.y) / kMostColumns);
+    return options.tile && options.width > 0 ? options.width / std::max(1.0, std::round(options.width / step))
+                                             : step;
 }
 
 PatchResult synthesizePatches(const PatchExemplar& exemplar, const PatchOptions& options,

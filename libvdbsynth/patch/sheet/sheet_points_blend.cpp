@@ -61,6 +61,44 @@ void spread(const PointSetSurface& surface, const std::vector<std::uint32_t>& ne
     sheet = std::move(result);
 }
 
+// What a tile has beyond its sides: the points at the opposite ones.
+void addPeriods(const SheetSource& source, int rings, std::vector<Vec3f>& points,
+                std::vector<Vec3f>& normals) {
+    const PatchLattice& l = source.arrangement.lattice;
+    const double width = l.nx * l.step, depth = l.ny * l.step, reach = rings * l.step;
+    const std::size_t count = points.size();
+    for (int i = -1; i <= 1; ++i)
+        for (int j = -1; j <= 1; ++j) {
+            if (i == 0 && j == 0) continue;
+            for (std::size_t p = 0; p < count; ++p) {
+                const Vec3d at = cast<double>(points[p]) + Vec3d{i * width, j * depth, 0};
+                if (at.x < -reach || at.y < -reach || at.x > width + reach || at.y > depth + reach) continue;
+                points.push_back(cast<float>(at));
+                normals.push_back(normals[p]);
+            }
+        }
+}
+
+// How far the surface of the exemplar's points is from each of those that are needed, along its normal: what
+// a fit makes of curvature and noise.
+std::vector<float> fitErrors(const SheetSource& source, const SheetPoints& sheet, const RunContext& ctx) {
+    const PatchExemplar& exemplar = source.exemplar;
+    std::vector<std::uint8_t> needed(exemplar.points.size(), 0);
+    for (std::size_t p = 0; p < sheet.size(); ++p)
+        if (sheet.blended[p]) needed[sheet.source[p]] = 1;
+    std::vector<float> error(exemplar.points.size(), 0.f);
+    parallelFor(ctx, error.size(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p) {
+            if (!needed[p]) continue;
+            const Vec3d place = cast<double>(exemplar.points[p]), normal = cast<double>(exemplar.normals[p]);
+            const auto foot = source.surface.project(place, normal);
+            if (foot && length(foot->point - place) < exemplar.spacing)
+                error[p] = float(dot(foot->point - place, foot->normal));
+        }
+    });
+    return error;
+}
+
 }  // namespace
 
 void blendBorders(const SheetSource& source, SheetPoints& sheet, const RunContext& ctx) {
@@ -81,8 +119,10 @@ void blendBorders(const SheetSource& source, SheetPoints& sheet, const RunContex
     if (moving.empty()) return;
     PointSetSurfaceOptions options;
     options.kernel = source.exemplar.kernel;
+    if (source.arrangement.tile) addPeriods(source, support, points, normals);
     const PointSetSurface surface(std::move(points), std::move(normals), options, ctx);
     std::vector<Vec3f> moved(moving.size()), turned(moving.size());
+    std::vector<std::uint8_t> held(moving.size());
     Stage stage(ctx, "blending borders", 1);
     parallelFor(ctx, moving.size(), 256, [&](std::size_t begin, std::size_t end) {
         for (std::size_t m = begin; m < end; ++m) {
@@ -91,6 +131,7 @@ void blendBorders(const SheetSource& source, SheetPoints& sheet, const RunContex
             const auto foot = surface.project(place, normal);
             const bool holds = foot && length(foot->point - place) < 2 * source.exemplar.spacing &&
                                dot(foot->normal, normal) > 0;
+            held[m] = holds ? 1 : 0;
             moved[m] = holds ? cast<float>(foot->point) : sheet.points[p];
             turned[m] = holds ? cast<float>(foot->normal) : sheet.normals[p];
         }
@@ -98,9 +139,12 @@ void blendBorders(const SheetSource& source, SheetPoints& sheet, const RunContex
     for (std::size_t m = 0; m < moving.size(); ++m) {
         sheet.points[moving[m]] = moved[m];
         sheet.normals[moving[m]] = turned[m];
-        sheet.blended[moving[m]] = 1;
+        sheet.blended[moving[m]] = held[m];
     }
     if (source.options.even) spread(surface, near, moves, source.exemplar.spacing, sheet, ctx);
+    const std::vector<float> error = fitErrors(source, sheet, ctx);
+    for (std::size_t p = 0; p < sheet.size(); ++p)
+        if (sheet.blended[p]) sheet.points[p] = sheet.points[p] - sheet.normals[p] * error[sheet.source[p]];
     stage.advance();
 }
 

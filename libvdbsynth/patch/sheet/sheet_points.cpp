@@ -31,7 +31,7 @@ double periodOf(int count, double step) {
 
 double wrappedTo(double x, double period) {
     const double inside = x - std::floor(x / period) * period;
-    return inside < period ? inside : 0;
+    return float(inside) < float(period) ? inside : 0;
 }
 
 class PartMaker {

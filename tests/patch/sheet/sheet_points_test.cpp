@@ -129,9 +129,11 @@ TEST_CASE("sheetPoints: sides apart meet in the middle, and nothing beyond the r
     CHECK(after.borders.apartBefore == Approx(1).epsilon(0.01));
     CHECK(after.borders.apartAfter < 0.1);
     REQUIRE(after.sheet.size() == before.sheet.size());
+    const double floor = double(texture.exemplar.points[0].z);
     for (std::size_t p = 0; p < after.sheet.size(); ++p) {
         const double off = std::abs(double(before.sheet.points[p].x) - 20);
-        const double z = double(after.sheet.points[p].z), was = double(before.sheet.points[p].z);
+        const double z = double(after.sheet.points[p].z) - floor,
+                     was = double(before.sheet.points[p].z) - floor;
         REQUIRE(was == Approx(after.sheet.patch[p] == 0 ? 0 : 1).margin(1e-5));
         if (off > 2 + 10) REQUIRE(z == was);
         if (off < 1) REQUIRE(z == Approx(0.5).margin(0.1));
@@ -171,10 +173,10 @@ TEST_CASE("sheetPoints: only points at borders are blended, and lie evenly there
         }
         if (std::abs(at.x - 20) > 8 || at.y < 2 || at.y > 46) continue;
         // Between the two phases.
-        const double low = std::min(crate.at(at.x, at.y), crate.at(at.x, at.y - 0.3)),
-                     high = std::max(crate.at(at.x, at.y), crate.at(at.x, at.y - 0.3));
-        REQUIRE(at.z > low - 0.1);
-        REQUIRE(at.z < high + 0.1);
+        const double z = at.z - crate.height - 2, one = crate.at(at.x, at.y),
+                     other = crate.at(at.x, at.y - 0.3);
+        REQUIRE(z > std::min(one, other) - 0.1);
+        REQUIRE(z < std::max(one, other) + 0.1);
         std::uint32_t number[2];
         float squared[2];
         neighbours.nearest(made.sheet.points[p], 2, number, squared);

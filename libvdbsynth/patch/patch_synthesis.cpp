@@ -6,6 +6,7 @@
 #include "libvdbsynth/patch/patch_size.h"
 #include "libvdbsynth/patch/scanline/pairing_weights.h"
 #include "libvdbsynth/patch/scanline/scanline_patches.h"
+#include "libvdbsynth/patch/sheet/patch_alignment.h"
 #include "libvdbsynth/points/point_set_surface.h"
 #include "libvdbsynth/points/surface_variation.h"
 
@@ -166,6 +167,7 @@ PatchResult byCuts(const PatchExemplar& exemplar, const PointSetSurface& surface
                    {sides.patch, sides.overlap, options.tolerance, options.tile, options.repairs}, ctx);
     result.search = secondsSince(begin);
     begin = std::chrono::steady_clock::now();
+    if (options.warp) alignPatches(exemplar, surface, field, result.arrangement, ctx);
     SheetResult made = sheetPoints(exemplar, surface, field, result.arrangement,
                                    sheetOptionsOf(options, result.arrangement.overlap), ctx);
     result.warp = secondsSince(begin);

@@ -31,10 +31,22 @@ std::optional<std::vector<Primitive>> shapesOf(const std::string& kind, const Ex
     return std::nullopt;
 }
 
-BrickField fieldOf(const std::string& kind, const ExemplarRequest& request, const RunContext& ctx) {
-    if (kind == "foam") return foamField(request, ctx);
-    if (kind == "sponge") return spongeField(request, ctx);
-    return kind == "bumps" ? bumpsField(request, ctx) : terrainField(request, ctx);
+// The kinds that are no unions.
+void makeField(const std::string& kind, const ExemplarRequest& request, ExemplarField& result,
+               const RunContext& ctx) {
+    if (kind == "foam") {
+        result.field = foamField(request, ctx);
+        return;
+    }
+    result.exact = false;
+    if (kind == "sponge") {
+        result.surface = spongeSurface(request);
+        result.field = spongeField(request, ctx);
+        return;
+    }
+    const Heights heights = kind == "bumps" ? bumpsHeights(request) : terrainHeights(request);
+    result.surface = [heights](const Vec3d& p) { return p.z - heights(p.x, p.y); };
+    result.field = heightsField(request, heights, ctx);
 }
 
 // The union sampled `fine` times as finely.
@@ -123,10 +135,10 @@ ExemplarField makeExemplar(const ExemplarOptions& options, const ExemplarSamplin
     result.domain = request.domain;
     if (const auto shapes = shapesOf(kind.name, request, ctx)) {
         result.fine = sampling.fine;
+        result.surface = unionDistance(*shapes, request.box, double(kExemplarLimit));
         result.field = finerUnion(*shapes, request.box, result.fine, ctx);
     } else {
-        result.field = fieldOf(kind.name, request, ctx);
-        result.exact = kind.name == "foam";
+        makeField(kind.name, request, result, ctx);
     }
     stage.advance();
     return result;

@@ -1,7 +1,9 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/grid/brick_field.h"
+#include "libvdbsynth/math/vec3.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -49,6 +51,10 @@ struct ExemplarField {
     IndexBox domain;    ///< [voxels] begins at 0; the solid is not yet clipped to it
     int fine = 1;       ///< samples along a voxel's side; 1 of kinds that are no unions of simple shapes
     bool exact = true;  ///< false: only the zero level is valid, distances must still be computed
+    /// The surface between samples: of a place [voxels] about its distance [voxels], negative inside, right
+    /// where it is zero and in its gradient's direction there; empty of foam. May be called from many
+    /// threads.
+    std::function<double(const Vec3d&)> surface;
 };
 
 /// @throw Error InvalidOption (unknown kind, a field out of its range)

@@ -3,6 +3,7 @@
 #include "libvdbsynth/procedural/primitives.h"
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace vdbsynth {
@@ -22,9 +23,16 @@ std::vector<Primitive> flowersPrimitives(const ExemplarRequest& request);
 std::vector<Primitive> fibresPrimitives(const ExemplarRequest& request);
 std::vector<Primitive> threeToriPrimitives(const ExemplarRequest& request);
 std::vector<Primitive> weavePrimitives(const ExemplarRequest& request);
-BrickField bumpsField(const ExemplarRequest& request, const RunContext& ctx);
 BrickField foamField(const ExemplarRequest& request, const RunContext& ctx);
+/// Zero on the surface, negative inside, about distances [voxels] near it.
+std::function<double(const Vec3d&)> spongeSurface(const ExemplarRequest& request);
 BrickField spongeField(const ExemplarRequest& request, const RunContext& ctx);
-BrickField terrainField(const ExemplarRequest& request, const RunContext& ctx);
+
+/// Height [voxels] of the solid's top at x, y.
+using Heights = std::function<double(double, double)>;
+Heights bumpsHeights(const ExemplarRequest& request);
+Heights terrainHeights(const ExemplarRequest& request);
+/// The solid below. Values are heights above its top, no distances.
+BrickField heightsField(const ExemplarRequest& request, const Heights& heights, const RunContext& ctx);
 
 }  // namespace vdbsynth

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 namespace vdbsynth {
 namespace {
@@ -36,30 +35,6 @@ double sumOf(const std::vector<Wave>& waves, const Vec3d& p) {
     double sum = 0;
     for (const Wave& wave : waves) sum += wave.amplitude * cosine(dot(wave.vector, p) + wave.phase);
     return sum;
-}
-
-// The solid below a height [voxels] of every column. Values are heights above the surface, no distances.
-BrickField heightsField(const ExemplarRequest& request, const RunContext& ctx,
-                        const std::function<double(double, double)>& heightAt) {
-    const int nx = request.box.size().x, ny = request.box.size().y;
-    const int wide = (nx + kSide - 1) / kSide * kSide, deep = (ny + kSide - 1) / kSide * kSide;
-    // One height per column; bricks of one column share them.
-    std::vector<double> heights(std::size_t(wide) * std::size_t(deep));
-    for (int x = 0; x < wide; ++x)
-        for (int y = 0; y < deep; ++y)
-            heights[std::size_t(x) * std::size_t(deep) + std::size_t(y)] =
-                heightAt(double(request.box.min.x + x), double(request.box.min.y + y));
-    return BrickField::generate(request.box, ctx, [&](const IndexBox& brick, float* samples) {
-        for (int x = 0; x < kSide; ++x)
-            for (int y = 0; y < kSide; ++y) {
-                const double top =
-                    heights[std::size_t(brick.min.x - request.box.min.x + x) * std::size_t(deep) +
-                            std::size_t(brick.min.y - request.box.min.y + y)];
-                for (int z = 0; z < kSide; ++z)
-                    *samples++ = float(
-                        std::clamp(brick.min.z + z - top, -double(kExemplarLimit), double(kExemplarLimit)));
-            }
-    });
 }
 
 std::uint64_t bumpKey(int i, int j) {
@@ -106,7 +81,7 @@ BrickField foamField(const ExemplarRequest& request, const RunContext& ctx) {
 
 // A sum of 48 plane waves of about one wavelength, nearly a Gaussian field; solid
 // where it is above 0.1 sigma.
-BrickField spongeField(const ExemplarRequest& request, const RunContext& ctx) {
+std::function<double(const Vec3d&)> spongeSurface(const ExemplarRequest& request) {
     std::vector<Wave> waves;
     constexpr int kWaves = 48;
     for (std::uint64_t i = 0; i < kWaves; ++i) {
@@ -116,15 +91,41 @@ BrickField spongeField(const ExemplarRequest& request, const RunContext& ctx) {
         waves.push_back({direction * k, 2 * kPi * random.uniform(), std::sqrt(2.0 / kWaves)});
     }
     const double slope = 2 * kPi / request.feature;  // turns the field's values into voxels near its zero
+    return [waves, slope](const Vec3d& p) { return (0.1 - sumOf(waves, p)) / slope; };
+}
+
+BrickField spongeField(const ExemplarRequest& request, const RunContext& ctx) {
+    const auto surface = spongeSurface(request);
     return BrickField::fromVoxels(request.box, ctx, [&](const Index3& voxel) {
-        const Vec3d p{double(voxel.x), double(voxel.y), double(voxel.z)};
-        return float(
-            std::clamp((0.1 - sumOf(waves, p)) / slope, -double(kExemplarLimit), double(kExemplarLimit)));
+        const double value = surface({double(voxel.x), double(voxel.y), double(voxel.z)});
+        return float(std::clamp(value, -double(kExemplarLimit), double(kExemplarLimit)));
+    });
+}
+
+BrickField heightsField(const ExemplarRequest& request, const Heights& heightAt, const RunContext& ctx) {
+    const int nx = request.box.size().x, ny = request.box.size().y;
+    const int wide = (nx + kSide - 1) / kSide * kSide, deep = (ny + kSide - 1) / kSide * kSide;
+    // One height per column; bricks of one column share them.
+    std::vector<double> heights(std::size_t(wide) * std::size_t(deep));
+    for (int x = 0; x < wide; ++x)
+        for (int y = 0; y < deep; ++y)
+            heights[std::size_t(x) * std::size_t(deep) + std::size_t(y)] =
+                heightAt(double(request.box.min.x + x), double(request.box.min.y + y));
+    return BrickField::generate(request.box, ctx, [&](const IndexBox& brick, float* samples) {
+        for (int x = 0; x < kSide; ++x)
+            for (int y = 0; y < kSide; ++y) {
+                const double top =
+                    heights[std::size_t(brick.min.x - request.box.min.x + x) * std::size_t(deep) +
+                            std::size_t(brick.min.y - request.box.min.y + y)];
+                for (int z = 0; z < kSide; ++z)
+                    *samples++ = float(
+                        std::clamp(brick.min.z + z - top, -double(kExemplarLimit), double(kExemplarLimit)));
+            }
     });
 }
 
 // Five octaves of sixteen waves; each octave has half the wavelength and 0.45 of the height.
-BrickField terrainField(const ExemplarRequest& request, const RunContext& ctx) {
+Heights terrainHeights(const ExemplarRequest& request) {
     std::vector<Wave> waves;
     constexpr int kWaves = 16, kOctaves = 5;
     double wavelength = request.feature, height = 0.16 * request.feature;
@@ -136,23 +137,23 @@ BrickField terrainField(const ExemplarRequest& request, const RunContext& ctx) {
             waves.push_back({direction * k, 2 * kPi * random.uniform(), height * std::sqrt(2.0 / kWaves)});
         }
     const double level = request.domain.min.z + 0.5 * request.domain.size().z;
-    return heightsField(request, ctx, [&](double x, double y) { return level + sumOf(waves, {x, y, 0}); });
+    return [waves, level](double x, double y) { return level + sumOf(waves, {x, y, 0}); };
 }
 
 // Round bumps in staggered rows, (1 - r^2 / R^2)^2 high, which add up where they overlap.
-BrickField bumpsField(const ExemplarRequest& request, const RunContext& ctx) {
+Heights bumpsHeights(const ExemplarRequest& request) {
     const double f = request.feature, row = 0.87 * f;
     const double level = request.domain.min.z + 0.35 * request.domain.size().z;
     Random phases(request.seed, 0, kBumpPurpose);
     const double phaseX = f * phases.uniform(), phaseY = f * phases.uniform();
-    const auto siteOf = [](double place, double step) { return int(std::floor(place / step)); };
-    return heightsField(request, ctx, [&](double x, double y) {
+    return [=, seed = request.seed](double x, double y) {
+        const auto siteOf = [](double place, double step) { return int(std::floor(place / step)); };
         double height = 0;
         const int row0 = siteOf(y - phaseY, row), column0 = siteOf(x - phaseX, f);
         // No bump reaches farther than 0.63 features from its site.
         for (int j = row0 - 1; j <= row0 + 2; ++j)
             for (int i = column0 - 2; i <= column0 + 2; ++i) {
-                Random random(request.seed, bumpKey(i, j), kBumpPurpose + 1);
+                Random random(seed, bumpKey(i, j), kBumpPurpose + 1);
                 const double atX = phaseX + (i + (j & 1) * 0.5) * f + random.uniform(-0.08, 0.08) * f;
                 const double atY = phaseY + j * row + random.uniform(-0.08, 0.08) * f;
                 const double reach = f * random.uniform(0.42, 0.55), top = f * random.uniform(0.18, 0.3);
@@ -160,7 +161,7 @@ BrickField bumpsField(const ExemplarRequest& request, const RunContext& ctx) {
                 if (rest > 0) height += top * rest * rest;
             }
         return level + height;
-    });
+    };
 }
 
 }  // namespace vdbsynth

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace vdbsynth {
 namespace {
@@ -32,10 +33,12 @@ public:
             forEachVoxel(cells, [&](const Index3& c) { mLists[latticeIndex(c, mCells)].push_back(i); });
         }
     }
-    // kCell is a multiple of the brick's side, so a brick lies in one cell.
+    // kCell is a multiple of the brick's side, so a brick lies in one cell. Outside the box: the nearest
+    // cell.
     const std::vector<std::uint32_t>& near(const Index3& corner) const {
-        const Index3 local = corner - mBox.min;
-        return mLists[latticeIndex({local.x / kCell, local.y / kCell, local.z / kCell}, mCells)];
+        Index3 cell = corner - mBox.min;
+        for (int axis = 0; axis < 3; ++axis) cell[axis] = std::clamp(cell[axis] / kCell, 0, mCells[axis] - 1);
+        return mLists[latticeIndex(cell, mCells)];
     }
 
 private:
@@ -84,6 +87,24 @@ Primitive scaled(Primitive shape, double by) {
     shape.radius *= by;
     shape.ring *= by;
     return shape;
+}
+
+std::function<double(const Vec3d&)> unionDistance(const std::vector<Primitive>& primitives,
+                                                  const IndexBox& box, double reach) {
+    struct Shapes {
+        std::vector<Primitive> primitives;
+        Bins bins;
+    };
+    // Half a voxel for places between voxels, one for those around the box.
+    const auto shapes =
+        std::make_shared<const Shapes>(Shapes{primitives, Bins(primitives, box, 2 * reach + 1)});
+    return [shapes, reach](const Vec3d& p) {
+        const Index3 voxel{int(std::floor(p.x)), int(std::floor(p.y)), int(std::floor(p.z))};
+        double nearest = reach;
+        for (std::uint32_t i : shapes->bins.near(voxel))
+            nearest = std::min(nearest, shapes->primitives[i].distance(p));
+        return nearest;
+    };
 }
 
 BrickField unionField(const std::vector<Primitive>& primitives, const IndexBox& box, float limit,

@@ -3,6 +3,7 @@
 #include "libvdbsynth/grid/brick_field.h"
 #include "libvdbsynth/math/vec3.h"
 
+#include <functional>
 #include <vector>
 
 namespace vdbsynth {
@@ -24,6 +25,12 @@ Primitive capsule(const Vec3d& a, const Vec3d& b, double radius);
 Primitive torus(const Vec3d& centre, const Vec3d& axis, double ring, double tube);
 /// The same shape in voxels of 1/`by` the side.
 Primitive scaled(Primitive shape, double by);
+
+/// The distance to the union of primitives at any place of a box and `reach` [voxels] around it; farther ones
+/// than `reach` count as that. Exact outside the union; inside overlaps it is the deepest primitive's.
+/// @par Cost of a call O(primitives near)
+std::function<double(const Vec3d&)> unionDistance(const std::vector<Primitive>& primitives,
+                                                  const IndexBox& box, double reach);
 
 /// Distance to the union of primitives over a box, clamped to +-limit. Exact outside the union; inside
 /// overlaps it is the deepest primitive's. Cost O(bricks * primitives near each).

@@ -139,6 +139,21 @@ TEST_CASE("makeExemplar: lattice kinds of a larger domain begin with the smaller
     }
 }
 
+TEST_CASE("makeExemplar: the surface between samples is that of the samples", "[procedural][property]") {
+    for (const ExemplarKind& kind : exemplarKinds()) {
+        INFO(kind.name);
+        const ExemplarField made = makeExemplar(optionsFor(kind.name, 32));
+        CHECK(bool(made.surface) == (kind.name != "foam"));
+        if (!made.surface) continue;
+        forEachVoxel(made.domain, [&](const Index3& voxel) {
+            const Vec3d p{double(voxel.x), double(voxel.y), double(voxel.z)};
+            const double limit = double(kExemplarLimit);
+            REQUIRE(std::clamp(made.surface(p), -limit, limit) ==
+                    Approx(double(made.field.at(voxel))).margin(1e-5));
+        });
+    }
+}
+
 TEST_CASE("makeExemplar: finer samples and more around are the same geometry", "[procedural][property]") {
     for (const char* kind :
          {"grid", "chainmail", "fibres", "weave", "flowers", "bumps", "terrain", "sponge"}) {

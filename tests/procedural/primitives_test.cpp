@@ -28,6 +28,7 @@ TEST_CASE("unionField: equals the least of all distances, clamped", "[procedural
     }
     const IndexBox box{{-6, -6, -6}, {69, 50, 60}};
     const BrickField field = unionField(primitives, box, 4.f, {});
+    const auto distance = unionDistance(primitives, box, 4);
     for (std::uint64_t i = 0; i < 4000; ++i) {
         Random random(3, i);
         const Index3 p{int(random.below(76)) - 6, int(random.below(57)) - 6, int(random.below(67)) - 6};
@@ -35,6 +36,7 @@ TEST_CASE("unionField: equals the least of all distances, clamped", "[procedural
         for (const Primitive& primitive : primitives)
             nearest = std::min(nearest, primitive.distance({double(p.x), double(p.y), double(p.z)}));
         REQUIRE(double(field.at(p)) == Approx(std::max(nearest, -4.0)).margin(1e-5));
+        REQUIRE(distance({double(p.x), double(p.y), double(p.z)}) == Approx(nearest));
     }
 }
 
@@ -43,4 +45,13 @@ TEST_CASE("scaled: distances of the same shapes in finer voxels", "[procedural][
          {ball({1, 2, 3}, 2), capsule({0, 1, 0}, {4, 0, 2}, 1), torus({3, 1, 1}, {0.2, 0.1, 1}, 4, 1)})
         for (const Vec3d& p : {Vec3d{0, 0, 0}, Vec3d{5, -2, 1}, Vec3d{2, 2, 2}})
             CHECK(scaled(shape, 3).distance(p * 3.0) == Approx(3 * shape.distance(p)));
+}
+
+TEST_CASE("unionDistance: between voxels and around its box", "[procedural]") {
+    const auto distance =
+        unionDistance({ball({10, 10, 10}, 3), ball({36, 10, 10}, 3)}, {{0, 0, 0}, {39, 20, 20}}, 4);
+    CHECK(distance({13.25, 10, 10}) == Approx(0.25));
+    CHECK(distance({31.9, 10, 10}) == Approx(1.1));  // beyond the edge of a cell
+    CHECK(distance({42.5, 10, 10}) == Approx(3.5));
+    CHECK(distance({-3, -3, 10}) == 4);
 }

@@ -1,4 +1,4 @@
-#!/ usr / bin / python3
+#!/usr/bin/python3
 """Puts the textures of `make`'s pairs on models and measures what came of it: the angle between grooves and the direction
 field, their spacing, the density of holes and whether they go through, the offset of a dilation, a blur of densities. Prints a line for each.
 Usage: analogies.py BUILD_FOLDER [--analogy "OPTIONS"] [ROW...]
@@ -21,7 +21,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 SAMPLES = pathlib.Path(os.environ.get("VDBSYNTH_SAMPLES", str(SOURCE.parent / "shared" / "data")))
 BAND = 12  # [voxels] half-width of what is measured
 APART = 2  # [spacings] from singularities that angles and spacings are taken at
-#name : (pair, target : a kind of `make` or a sample, its resolution, direction)
+# name: (pair, target: a kind of `make` or a sample, its resolution, direction)
 ROWS = {
     "grooves-bunny": ("grooves", "meshes/bunny.off", 200, "axis:z"),
     "grooves-tori": ("grooves", "three-tori", 196, "around:z"),
@@ -33,7 +33,7 @@ ROWS = {
     "dilation-bunny": ("dilation", "meshes/bunny.off", 200, "axis:z"),
     "dilation-tori": ("dilation", "three-tori", 196, "around:z"),
 }
-#name : (target, its resolution, sigma of the blur[voxels])
+# name: (target, its resolution, sigma of the blur [voxels])
 BLURS = {
     "blur-tori-1": ("three-tori", 96, 1.0),
     "blur-tori-2": ("three-tori", 96, 2.0),
@@ -99,7 +99,7 @@ def angles(places, slope, direction, sigma, shape):
             field = np.zeros(shape, np.float32)
             np.add.at(field, at, slope[:, i] * slope[:, j])
             tensor[:, i, j] = tensor[:, j, i] = ndimage.gaussian_filter(field, sigma, truncate=2.5)[at]
-#The line runs along what is at right angles to the strongest change, within the surface.
+# The line runs along what is at right angles to the strongest change, within the surface.
     strongest = np.linalg.eigh(tensor)[1][:, :, 2]
     across = np.abs((strongest * direction).sum(axis=1))
     return np.degrees(np.arcsin(np.clip(across, 0, 1))), np.trace(tensor, axis1=1, axis2=2)
@@ -210,7 +210,7 @@ class Measurements:
         """Parts of the plain surface that the texture opens, or covers where sign is -1: how many were found, and a text."""
         of_pair, _, pair_plain, _, pair_places, inside = self.pair(0)
         sizes, middles = self.openings(sign * of_pair, pair_places, pair_plain.distance.shape)
-#An opening counts where its middle is, so that those that the pair's border cuts count in part, as they should.
+# An opening counts where its middle is, so that those that the pair's border cuts count in part, as they should.
         corners = inside + np.array([[8], [-8]])
         within = lambda at: np.all((at >= corners[0]) & (at <= corners[1]), axis=1)
         usual = np.median(sizes[within(middles)])

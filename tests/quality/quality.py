@@ -1,4 +1,4 @@
-#!/ usr / bin / python3
+#!/usr/bin/python3
 """Makes more of every exemplar of a fixed set and measures how good it is by `vdb_synth compare`: prints a table, writes
 quality.json, the pages of compare and a contact sheet (quality.png).
 Usage: quality.py BUILD_FOLDER [--seeds N] [--size X,Y,Z] [--synth "OPTIONS"] [--name NAME] [EXEMPLAR...]
@@ -18,7 +18,7 @@ import zlib
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 SAMPLES = os.environ.get("VDBSYNTH_SAMPLES", str(SOURCE.parent / "shared" / "data"))
 
-#name : (how to make it, size of the result, process to draw afresh from)
+# name: (how to make it, size of the result, process to draw afresh from)
 SHEETS = ("chainmail", "terrain", "weave")  # one layer: more of it is wider, not higher
 MADE = {kind: (["make", kind, "exemplar.vdb", "--resolution", 64, "--seed", 1], "2x,2x,1x" if kind in SHEETS else "2x,2x,2x",
                f"make {kind}")
@@ -31,7 +31,7 @@ REAL = {
     "ketton": (["convert", "volumes/ketton.zip", "-o", "whole.vdb"], "2x,2x,2x", None),
     "cheese": (["convert", "meshes/cheese.off", "-o", "whole.vdb", "--resolution", 128], "2x,2x,1x", None),
 }
-#What is cut out of a whole model to be the exemplar.
+# What is cut out of a whole model to be the exemplar.
 CROPS = {"cheese": "-63,-63,-56,0,0,-1", "ketton": "64,64,64,159,159,159"}
 PICTURE = (320, 240)
 

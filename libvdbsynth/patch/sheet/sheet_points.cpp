@@ -71,12 +71,11 @@ private:
     std::vector<std::uint32_t> ownPoints(std::int32_t number) const {
         const PatchArrangement& a = mSource.arrangement;
         const LaidPatch& laid = a.patches[std::size_t(number)];
-        const PatchLattice& from = mSource.field.lattice;
         const Vec3d shift = shiftOf(a, number);
         std::vector<std::uint32_t> own;
-        // A column more on all sides: points are moved by fractions of a step.
-        for (int i = std::max(0, laid.from.i - 1); i <= std::min(from.nx - 1, laid.from.i + laid.nx); ++i)
-            for (int j = std::max(0, laid.from.j - 1); j <= std::min(from.ny - 1, laid.from.j + laid.ny); ++j)
+        constexpr int kPad = PointColumns::kPad;
+        for (int i = laid.from.i - kPad; i < laid.from.i + laid.nx + kPad; ++i)
+            for (int j = laid.from.j - kPad; j < laid.from.j + laid.ny + kPad; ++j)
                 for (const std::uint32_t* p = mColumns.begin(i, j); p != mColumns.end(i, j); ++p)
                     if (isOwn(number, cast<double>(mSource.exemplar.points[*p]) + shift)) own.push_back(*p);
         return own;
@@ -144,21 +143,22 @@ SheetResult joined(std::vector<PatchPart>& parts, double spacing) {
 }  // namespace
 
 PointColumns::PointColumns(const PatchExemplar& exemplar, const PatchLattice& lattice)
-    : mLattice(lattice), mBegin(lattice.columns() + 1, 0) {
+    : mPadded{lattice.step, lattice.nx + 2 * kPad, lattice.ny + 2 * kPad, lattice.nz} {
+    mBegin.assign(mPadded.columns() + 1, 0);
     const auto columnOf = [&](const Vec3f& point) {
-        const double i = std::floor(double(point.x) / lattice.step),
-                     j = std::floor(double(point.y) / lattice.step);
-        if (i < 0 || j < 0 || i >= lattice.nx || j >= lattice.ny) return std::ptrdiff_t(-1);
-        return std::ptrdiff_t(lattice.column(int(i), int(j)));
+        const double i = std::floor(double(point.x) / lattice.step) + kPad,
+                     j = std::floor(double(point.y) / lattice.step) + kPad;
+        if (i < 0 || j < 0 || i >= mPadded.nx || j >= mPadded.ny) return std::ptrdiff_t(-1);
+        return std::ptrdiff_t(mPadded.column(int(i), int(j)));
     };
     for (const Vec3f& point : exemplar.points)
-        if (const std::ptrdiff_t column = columnOf(point); column >= 0) ++mBegin[std::size_t(column) + 1];
+        if (const std::ptrdiff_t at = columnOf(point); at >= 0) ++mBegin[std::size_t(at) + 1];
     for (std::size_t c = 1; c < mBegin.size(); ++c) mBegin[c] += mBegin[c - 1];
     mPoints.resize(mBegin.back());
     std::vector<std::size_t> next(mBegin.begin(), mBegin.end() - 1);
     for (std::size_t p = 0; p < exemplar.points.size(); ++p)
-        if (const std::ptrdiff_t column = columnOf(exemplar.points[p]); column >= 0)
-            mPoints[next[std::size_t(column)]++] = std::uint32_t(p);
+        if (const std::ptrdiff_t at = columnOf(exemplar.points[p]); at >= 0)
+            mPoints[next[std::size_t(at)]++] = std::uint32_t(p);
 }
 
 SheetResult sheetPoints(const PatchExemplar& exemplar, const PointSetSurface& surface,

@@ -43,12 +43,21 @@ public:
           mPatch(mArrangement.patches[std::size_t(number)]) {}
 
     BorderMoves read() {
-        for (int i = 0; i < mPatch.nx; ++i)
-            for (int j = 0; j < mPatch.ny; ++j) readColumn(i, j);
+        readNodes();
         return thinned();
+    }
+    std::vector<BorderPair> readPairs() {
+        mSparse = true;
+        readNodes();
+        return std::move(mPairs);
     }
 
 private:
+    void readNodes() {
+        for (int i = 0; i < mPatch.nx; ++i)
+            for (int j = 0; j < mPatch.ny; ++j) readColumn(i, j);
+    }
+
     const std::int32_t* labelsAt(int i, int j) const {
         const std::ptrdiff_t column = mArrangement.columnAt(mPatch.at.i + i, mPatch.at.j + j);
         return column < 0 ? nullptr : mArrangement.label.data() + column * mArrangement.lattice.nz;
@@ -61,7 +70,7 @@ private:
                                          labelsAt(i, j + 1)};
         const int nz = mArrangement.lattice.nz;
         for (int k = 0; k < nz; ++k) {
-            if (here[k] != mNumber) continue;
+            if (here[k] != mNumber || (mSparse && (i + j + k) % 2 != 0)) continue;
             std::int32_t seen[6];
             int count = 0;
             const auto note = [&](std::int32_t other) {
@@ -97,6 +106,10 @@ private:
         if (!foot || dot(foot->normal, here->normal) < kSameWay) return;
         const Vec3d move = foot->point - across - here->point;
         if (length(move) > mSource.options.limit * step) return;
+        if (mSparse) {
+            mPairs.push_back({here->normal, move, other});
+            return;
+        }
         mFound.centres.push_back(here->point);
         mFound.moves.push_back(move * 0.5);
     }
@@ -120,12 +133,18 @@ private:
     const std::int32_t mNumber;
     const LaidPatch& mPatch;
     BorderMoves mFound;
+    bool mSparse = false;  // every second node
+    std::vector<BorderPair> mPairs;
 };
 
 }  // namespace
 
 BorderMoves borderMoves(const SheetSource& source, std::int32_t patch) {
     return BorderReader(source, patch).read();
+}
+
+std::vector<BorderPair> borderPairs(const SheetSource& source, std::int32_t patch) {
+    return BorderReader(source, patch).readPairs();
 }
 
 std::vector<std::uint8_t> borderDistance(const PatchArrangement& arrangement, int most,

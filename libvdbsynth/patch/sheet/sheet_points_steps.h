@@ -16,17 +16,21 @@ struct SheetSource {
     const SheetOptions& options;
 };
 
-/// The exemplar's points by the columns of its lattice, margins not included.
+/// The exemplar's points by the columns of its lattice, and of its margins kPad more: patches are moved by
+/// up to 2.5 steps (LaidPatch::fine).
 class PointColumns {
 public:
+    static constexpr int kPad = 3;
+
     PointColumns(const PatchExemplar& exemplar, const PatchLattice& lattice);
-    const std::uint32_t* begin(int i, int j) const { return mPoints.data() + mBegin[mLattice.column(i, j)]; }
-    const std::uint32_t* end(int i, int j) const {
-        return mPoints.data() + mBegin[mLattice.column(i, j) + 1];
-    }
+    /// @param i, j  from -kPad to the side plus kPad - 1
+    const std::uint32_t* begin(int i, int j) const { return mPoints.data() + mBegin[column(i, j)]; }
+    const std::uint32_t* end(int i, int j) const { return mPoints.data() + mBegin[column(i, j) + 1]; }
 
 private:
-    PatchLattice mLattice;
+    std::size_t column(int i, int j) const { return mPadded.column(i + kPad, j + kPad); }
+
+    PatchLattice mPadded;
     std::vector<std::size_t> mBegin;
     std::vector<std::uint32_t> mPoints;
 };
@@ -36,6 +40,14 @@ struct BorderMoves {
     std::vector<Vec3d> centres, moves;  ///< plane space of the exemplar
 };
 BorderMoves borderMoves(const SheetSource& source, std::int32_t patch);
+
+/// A place at a border of a patch: its normal there, and from it to the other patch's surface.
+struct BorderPair {
+    Vec3d normal, move;
+    std::int32_t other = 0;
+};
+/// At every second node of a patch's borders.
+std::vector<BorderPair> borderPairs(const SheetSource& source, std::int32_t patch);
 
 /// How many nodes every node is from one of another patch, along any axis or diagonally, up to `most`.
 std::vector<std::uint8_t> borderDistance(const PatchArrangement& arrangement, int most,

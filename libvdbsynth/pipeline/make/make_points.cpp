@@ -43,22 +43,53 @@ ExemplarSampling samplingOf(const MakePointsOptions& options) {
     return sampling;
 }
 
-// The points of a zero level inside a box of samples; those outside it are caps, or too near them.
-PointCloud pointsWithin(const openvdb::FloatGrid& grid, double spacing, const Vec3d& low, const Vec3d& high,
-                        const RunContext& ctx) {
-    PointOptions options;
-    options.spacing = spacing;
-    const PointCloud all = levelSetToPoints(grid, options, ctx);
-    PointCloud kept;
-    kept.origin = all.origin;
-    for (std::size_t i = 0; i < all.points.size(); ++i) {
-        const Vec3d p = all.origin + cast<double>(all.points[i]);
+// Drops the points outside a box: those on caps, or too near them.
+void keepWithin(const Vec3d& low, const Vec3d& high, PointCloud& cloud) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+        const Vec3d p = cloud.origin + cast<double>(cloud.points[i]);
         if (p.x < low.x || p.y < low.y || p.z < low.z || p.x > high.x || p.y > high.y || p.z > high.z)
             continue;
-        kept.points.push_back(all.points[i]);
-        kept.normals.push_back(all.normals[i]);
+        cloud.points[kept] = cloud.points[i];
+        cloud.normals[kept] = cloud.normals[i];
+        ++kept;
     }
-    return kept;
+    cloud.points.resize(kept);
+    cloud.normals.resize(kept);
+}
+
+Vec3d gradientAt(const std::function<double(const Vec3d&)>& surface, const Vec3d& p) {
+    constexpr double kStep = 1e-4;  // [voxels]
+    Vec3d gradient;
+    for (int axis = 0; axis < 3; ++axis) {
+        Vec3d ahead = p, behind = p;
+        ahead[axis] += kStep;
+        behind[axis] -= kStep;
+        gradient[axis] = (surface(ahead) - surface(behind)) / (2 * kStep);
+    }
+    return gradient;
+}
+
+// Moves points from the sampled zero level onto the surface itself, and gives them its normals: those of
+// samples differ by some degrees from voxel to voxel, which on thin tubes is as much as patches differ.
+void settle(const ExemplarField& made, double side, PointCloud& cloud, const RunContext& ctx) {
+    if (!made.surface) return;
+    constexpr int kSteps = 3;
+    constexpr double kFarthest = 0.5;  // [voxels]
+    parallelFor(ctx, cloud.points.size(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vec3d start = (cloud.origin + cast<double>(cloud.points[i])) * (1 / side);
+            Vec3d p = start, gradient;
+            for (int step = 0; step < kSteps; ++step) {
+                gradient = gradientAt(made.surface, p);
+                p = p - gradient * (made.surface(p) / std::max(dot(gradient, gradient), 1e-6));
+            }
+            gradient = gradientAt(made.surface, p);
+            if (!(length(p - start) < kFarthest) || !(length(gradient) > 0.1)) continue;
+            cloud.points[i] = cast<float>(p * side - cloud.origin);
+            cloud.normals[i] = cast<float>(normalized(gradient));
+        }
+    });
 }
 
 void sayPacked(const std::string& kind, const RunContext& ctx) {
@@ -89,7 +120,11 @@ TexturePoints pointsOf(const MakePointsOptions& options, const RunContext& ctx) 
         low.z = (made.domain.min.z - kExemplarMargin) * side;
         high.z = (made.domain.max.z + kExemplarMargin) * side;
     }
-    result.cloud = pointsWithin(*model.grid, spacingOf(options) * made.fine, low, high, ctx);
+    PointOptions darts;
+    darts.spacing = spacingOf(options) * made.fine;
+    result.cloud = levelSetToPoints(*model.grid, darts, ctx);
+    settle(made, side, result.cloud, ctx);
+    keepWithin(low, high, result.cloud);
     if (result.cloud.points.empty())
         throw Error(ErrorCode::EmptyInput,
                     "make " + kind + ": the domain is empty; use a larger `size` or another `seed`");

@@ -25,9 +25,9 @@ struct TexturePoints {
 };
 
 /// Evenly spaced points on the surface of a procedural exemplar, which is neither clipped nor capped at its
-/// domain: it continues for the margin, beyond which points are left out. Kinds that are unions of simple
-/// shapes are sampled as finely as their points lie, so that the level set's voxels do not show; of the
-/// others, points lie on the level set's zero level.
+/// domain: it continues for the margin, beyond which points are left out. Points lie on the surface itself,
+/// not on that of its samples, with its own normals, but for foam's. The spacing may fall short by a
+/// hundredth.
 /// @throw Error InvalidOption, Memory, EmptyInput (no surface), Cancelled
 /// @par Cost    O(points), about 24 tries for each   @par Repeats same bits for (options, ctx.seed), any
 /// number of threads

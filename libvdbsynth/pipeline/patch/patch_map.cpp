@@ -75,7 +75,7 @@ void readPatches(const std::string& path, const std::string& text, PatchMapFile&
     LaidPatch p;
     while (in >> p.from.i >> p.from.j >> p.at.i >> p.at.j >> p.nx >> p.ny >> p.fine.x >> p.fine.y >>
            p.fine.z >> p.cost) {
-        const bool good = p.nx > 0 && p.ny > 0 && p.from.i >= 0 && p.from.j >= 0 && dot(p.fine, p.fine) <= 4;
+        const bool good = p.nx > 0 && p.ny > 0 && p.from.i >= 0 && p.from.j >= 0 && dot(p.fine, p.fine) <= 16;
         if (!good || map.arrangement.patches.size() == kMostPatches)
             refuse(path, "has a patch that cannot be");
         map.arrangement.patches.push_back(p);

@@ -55,8 +55,8 @@ TEST_CASE("makePoints: points lie on the rings, face outwards and have no caps",
         const Vec3d middle = ring.a + normalized(flat) * ring.ring;
         worst = std::min(worst, dot(normalized(p - middle), cast<double>(made.cloud.normals[i])));
     }
-    CHECK(farthest < 0.06);  // [voxels] a fifth of the spacing
-    CHECK(worst > 0.97);
+    CHECK(farthest < 1e-4);  // [voxels]
+    CHECK(worst > 0.99999);
 }
 
 TEST_CASE("makePoints: the domain, the margin and the spacing", "[pipeline][property]") {
@@ -83,43 +83,44 @@ TEST_CASE("makePoints: the domain, the margin and the spacing", "[pipeline][prop
         least = std::min(least, gap);
         sum += gap;
     }
-    CHECK(least >= 0.3 * 0.9999);  // a quarter of a tube's 1.2 voxels
+    CHECK(least >= 0.3 * 0.99);  // a quarter of a tube's 1.2 voxels
     CHECK(sum / double(made.cloud.points.size()) < 0.34);
 }
 
 TEST_CASE("makePoints: every kind, on any threads, in the world's units", "[pipeline][determinism]") {
     for (const ExemplarKind& kind : exemplarKinds()) {
         INFO(kind.name);
-        MakePointsOptions options = optionsFor(kind.name, 24);
-        options.model.exemplar.feature = 8;
+        MakePointsOptions options = optionsFor(kind.name, 16);
+        options.model.exemplar.feature = 10;
         options.spacing = 1;
-        options.margin = 4;
-        const auto run = [&](int threads, double side, std::uint64_t seed = 3) {
+        options.margin = 2;
+        const auto run = [&](int threads, double side) {
             options.model.voxelSize = side;
             RunContext ctx;
             ctx.threads = threads;
-            ctx.seed = seed;
+            ctx.seed = 3;
             return makePoints(options, ctx);
         };
         const TexturePoints one = run(1, 1);
-        CHECK(one.cloud.points.size() > 120);
+        CHECK(one.cloud.points.size() > 80);
         CHECK(one.box.plane.has_value() == kind.isSheet());
-        for (int threads : {3}) {
-            const TexturePoints other = run(threads, 1);
-            CHECK(sameBits(other.cloud.points, one.cloud.points));
-            CHECK(sameBits(other.cloud.normals, one.cloud.normals));
+        const TexturePoints other = run(3, 1);
+        CHECK(sameBits(other.cloud.points, one.cloud.points));
+        CHECK(sameBits(other.cloud.normals, one.cloud.normals));
+        double outside = 0;
+        for (std::size_t i = 0; i < one.cloud.points.size(); ++i) {
+            CHECK(double(length(one.cloud.normals[i])) == Approx(1).margin(1e-5));
+            for (int axis = 0; axis < 3; ++axis) {
+                const double at = double(one.cloud.points[i][axis]);
+                outside = std::max({outside, one.box.low[axis] - at, at - one.box.high[axis]});
+            }
         }
-        CHECK_FALSE(sameBits(run(2, 1, 4).cloud.points, one.cloud.points));
+        CHECK(outside <= (kind.isSheet() ? 6.0 : 2.0));
+        if (kind.name != "weave") continue;
         const TexturePoints small = run(2, 0.25);
         REQUIRE(small.cloud.points.size() == one.cloud.points.size());
-        CHECK(length(small.cloud.points[100] * 4.f - one.cloud.points[100]) < 1e-4f);
+        CHECK(length(small.cloud.points[50] * 4.f - one.cloud.points[50]) < 1e-4f);
         CHECK(length(small.box.high * 4.0 - one.box.high) < 1e-12);
-        double outside = 0;
-        for (const Vec3f& p : one.cloud.points)
-            for (int axis = 0; axis < 3; ++axis)
-                outside = std::max(
-                    {outside, one.box.low[axis] - double(p[axis]), double(p[axis]) - one.box.high[axis]});
-        CHECK(outside <= (kind.isSheet() ? 6.0 : 4.0));
     }
 }
 

@@ -118,22 +118,21 @@ TEST_CASE("synthesizePatches: four times a periodic egg-crate is the formula to 
     // 14.7 is no whole number of steps. The last is curved by a radius of 3 spacings, as sharp as points
     // tell.
     for (const test::EggCrate crate :
-         {test::EggCrate{16, 1}, test::EggCrate{14.7, 1}, test::EggCrate{24, 2}, test::EggCrate{16, 2}}) {
-        const bool sharp = crate.height / crate.period > 0.1;
-        const int side = 3 * int(crate.period);
-        const PatchResult made =
-            synthesizePatches(test::eggCrateExemplar(crate, side), sized(4 * side, 4 * side));
+         {test::EggCrate{16, 1}, test::EggCrate{24, 2}, test::EggCrate{16, 2}, test::EggCrate{14.7, 1}}) {
+        const bool hard = crate.height / crate.period > 0.1 || crate.period < 16;
+        const int side = 3 * int(crate.period), wide = (hard ? 2 : 4) * side;
+        const PatchResult made = synthesizePatches(test::eggCrateExemplar(crate, side), sized(wide, wide));
         const CrateFit fit = fitOf(crate, made.sheet, crate.height + 2);
         CAPTURE(crate.period, crate.height, fit.worst, fit.mean, fit.normal);
-        CHECK(fit.worst < (sharp ? 0.2 : 0.1));
-        CHECK(fit.mean < 0.03);
-        CHECK(fit.normal < (sharp ? 0.3 : 0.1));
-        CHECK(double(made.sheet.size()) == Approx(16.0 * side * side).epsilon(0.03));
-        const Gaps gaps = gapsOf(made.sheet, 2, 2, 4 * side - 2, 4 * side - 2);
+        CHECK(fit.worst < (hard ? 0.2 : 0.1));
+        CHECK(fit.mean < 0.015);
+        CHECK(fit.normal < (hard ? 0.3 : 0.1));
+        CHECK(double(made.sheet.size()) == Approx(double(wide) * wide).epsilon(0.03));
+        const Gaps gaps = gapsOf(made.sheet, 2, 2, wide - 2, wide - 2);
         CHECK(gaps.least > 0.4);
         CHECK(gaps.most < 1.3);
         CHECK(made.patches == made.arrangement.patches.size());
-        CHECK(made.patches > 100);
+        CHECK(made.patches > 20);
     }
 }
 

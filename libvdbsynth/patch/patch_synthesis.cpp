@@ -68,9 +68,22 @@ PatchSides sidesOf(const PatchField& field, const PatchOptions& options, const R
     return sides;
 }
 
-// Where a sheet's lattice begins, before its first column: a tile has no border of its own.
-double beginOf(const PatchOptions& options) {
-    return options.tile ? 0 : -options.border;
+int wholeColumns(double side, double step) {
+    return int(std::ceil(side / step - 1e-6));
+}
+
+// Columns of a sheet, with as many on all sides as its border needs, and at least as the surface at its ends
+// depends on. A tile has no ends.
+int columnsOf(const PatchExemplar& exemplar, const PatchOptions& options, double side, double step) {
+    constexpr double kReach = 7;  // [spacings]
+    const double beyond = std::max(options.border, kReach * exemplar.spacing);
+    return wholeColumns(side, step) + (options.tile ? 0 : 2 * wholeColumns(beyond, step));
+}
+
+// [world] Where the lattice of an arrangement begins.
+double beginOf(const PatchArrangement& arrangement, const PatchOptions& options) {
+    const PatchLattice& l = arrangement.lattice;
+    return -(l.nx - wholeColumns(options.width, l.step)) / 2 * l.step;
 }
 
 void add(const SheetPoints& from, std::size_t point, const Vec3f& place, SheetPoints& to) {
@@ -82,8 +95,9 @@ void add(const SheetPoints& from, std::size_t point, const Vec3f& place, SheetPo
 }
 
 // Moves the sheet so that it begins at 0, and keeps it and its border; a tile's border is its other side.
-SheetPoints placed(const SheetPoints& sheet, const PatchOptions& options) {
-    const double border = options.border, begin = beginOf(options);
+SheetPoints placed(const SheetPoints& sheet, const PatchArrangement& arrangement,
+                   const PatchOptions& options) {
+    const double border = options.border, begin = beginOf(arrangement, options);
     const int periods = options.tile && border > 0 ? 1 : 0;
     SheetPoints kept;
     for (int i = -periods; i <= periods; ++i)
@@ -140,12 +154,17 @@ PatchResult byPaper(const PatchExemplar& exemplar, const PatchField& field, cons
 
 PatchResult byCuts(const PatchExemplar& exemplar, const PointSetSurface& surface, const PatchField& field,
                    const PatchSides& sides, const PatchOptions& options, const RunContext& ctx) {
-    const auto columns = [&](double side) { return int(std::ceil(side / field.lattice.step - 1e-6)); };
+    const double step = field.lattice.step;
+    for (const double side : {options.width, options.depth})
+        if (options.tile && std::abs(wholeColumns(side, step) * step - side) > 1e-5 * step)
+            throw Error(ErrorCode::InvalidOption, "to tile, `size` must be whole steps of the field, " +
+                                                      roundedText(step, 6) + " each");
     PatchResult result;
     auto begin = std::chrono::steady_clock::now();
-    result.arrangement = layPatches(
-        field, columns(options.width - 2 * beginOf(options)), columns(options.depth - 2 * beginOf(options)),
-        {sides.patch, sides.overlap, options.tolerance, options.tile, options.repairs}, ctx);
+    result.arrangement =
+        layPatches(field, columnsOf(exemplar, options, options.width, step),
+                   columnsOf(exemplar, options, options.depth, step),
+                   {sides.patch, sides.overlap, options.tolerance, options.tile, options.repairs}, ctx);
     result.search = secondsSince(begin);
     begin = std::chrono::steady_clock::now();
     if (options.warp) alignPatches(exemplar, surface, field, result.arrangement, ctx);
@@ -155,7 +174,7 @@ PatchResult byCuts(const PatchExemplar& exemplar, const PointSetSurface& surface
     result.sheet = std::move(made.sheet);
     result.borders = made.borders;
     result.patches = result.arrangement.patches.size();
-    result.sheet = placed(result.sheet, options);
+    result.sheet = placed(result.sheet, result.arrangement, options);
     return result;
 }
 
@@ -225,7 +244,7 @@ SheetResult repeatPatches(const PatchExemplar& exemplar, const PatchArrangement&
                 "the map's patches reach beyond this exemplar; give one whose box is that of the run's own");
     SheetResult result =
         sheetPoints(exemplar, surface, field, arrangement, sheetOptionsOf(options, arrangement.overlap), ctx);
-    result.sheet = placed(result.sheet, options);
+    result.sheet = placed(result.sheet, arrangement, options);
     return result;
 }
 

@@ -15,14 +15,16 @@ enum class PatchMethod { Default, Paper };
 struct PatchOptions {
     PatchMethod method = PatchMethod::Default;
     double width = 0, depth = 0;  ///< [world] of the sheet along the plane's first and second axis
-    double border = 0;            ///< [world] at least 0: how far the points go on beyond that on all sides
-    double patch = 0;             ///< [world] side of a patch; 0: one and a half features (patch_size.h)
-    double overlap = 0;           ///< 0.05..0.8 of a patch over earlier ones; 0: a quarter
-    double tolerance = 0.1;       ///< 0..10, e: candidates within (1 + e) of the best are drawn from
+    /// [world] at least 0: how far the points go on beyond that on all sides. Its outermost 7 spacings know
+    /// less of the surface around them.
+    double border = 0;
+    double patch = 0;        ///< [world] side of a patch; 0: one and a half features (patch_size.h)
+    double overlap = 0;      ///< 0.05..0.8 of a patch over earlier ones; 0: a quarter
+    double tolerance = 0.1;  ///< 0..10, e: candidates within (1 + e) of the best are drawn from
     double step = 0;  ///< [spacings] 0.5..64, of the field that patches are compared by; 0: see fieldStep
 
     // Of the default method.
-    bool tile = false;  ///< the sheet continues at its opposite sides
+    bool tile = false;  ///< the sheet continues at its opposite sides; its size is whole steps of the field
     int repairs = 2;    ///< 0..20 rounds in which patches are laid over the worst seams
     bool warp = true;
     bool blend = true;

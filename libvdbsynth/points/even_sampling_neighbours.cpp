@@ -11,9 +11,12 @@ namespace {
 
 constexpr double kWidest = -0.8660254037844386;  // cosine of 150 degrees
 
-// Of the same sheet: facing the same way, and beside the place rather than above or below it.
-bool sameSheet(const Vec3d& chord, double distance, const Vec3d& normal, const Vec3d& other) {
-    return dot(normal, other) > 0 && std::abs(dot(chord, normal + other)) <= distance;
+// Of the same sheet: facing the same way, and beside the place rather than above or below it, or on it but
+// for what projections differ by.
+bool sameSheet(const Vec3d& chord, double distance, const Vec3d& normal, const Vec3d& other, double spacing) {
+    constexpr double kOnIt = 0.1;  // [spacings]
+    return dot(normal, other) > 0 &&
+           std::abs(dot(chord, normal + other)) <= std::max(distance, 2 * kOnIt * spacing);
 }
 
 // Grows with the angle of a direction of length 1, without a function of angles.
@@ -53,7 +56,8 @@ void SampledPoints::around(const Vec3d& place, const Vec3d& normal, std::int64_t
                 continue;
             PlanarNeighbour neighbour;
             neighbour.distance = std::sqrt(squared);
-            if (!sameSheet(chord, neighbour.distance, normal, cast<double>(mBlocks[k].normal))) continue;
+            if (!sameSheet(chord, neighbour.distance, normal, cast<double>(mBlocks[k].normal), reach / 2))
+                continue;
             const double x = dot(chord, frame.u), y = dot(chord, frame.v), size = std::sqrt(x * x + y * y);
             if (!(size > 0)) continue;
             neighbour.number = mBlocks.number(k);
@@ -75,7 +79,8 @@ bool SampledPoints::any(const Vec3d& place, const Vec3d& normal, double distance
         for (std::uint32_t k = begin; k < end && !found; ++k) {
             const Vec3d chord = cast<double>(mBlocks[k].point) - place;
             const double far = length(chord);
-            found = far < distance && sameSheet(chord, far, normal, cast<double>(mBlocks[k].normal));
+            found =
+                far < distance && sameSheet(chord, far, normal, cast<double>(mBlocks[k].normal), distance);
         }
     });
     return found;
@@ -109,7 +114,7 @@ std::vector<std::uint32_t> withoutNear(const std::vector<Vec3f>& points, const s
                     const Vec3d chord = cast<double>(points[j]) - cast<double>(points[i]);
                     const double far = length(chord);
                     if (far < distance && (isFixed(j) || j < i) &&
-                        sameSheet(chord, far, cast<double>(normals[i]), cast<double>(normals[j])))
+                        sameSheet(chord, far, cast<double>(normals[i]), cast<double>(normals[j]), distance))
                         near[i].push_back(j);
                 }
             });

@@ -61,6 +61,11 @@ TEST_CASE("patchExemplar: a box too low for its points grows by two spacings bey
     // A flat box too; of a high one nothing is cut.
     CHECK(patchExemplar(points, normals, {{0, 0, 0}, {5, 5, 0}}, PatchPlane::XY, 0.5).size.z == 9);
     CHECK(patchExemplar(points, normals, {{0, 0, -9}, {5, 5, 20}}, PatchPlane::XY, 0.5).size.z == 29);
+    // Unless the height is to stay as it is.
+    const PatchExemplar kept =
+        patchExemplar(points, normals, {{0, 0, 0}, {5, 5, 1}}, PatchPlane::XY, 0.5, false);
+    CHECK(kept.corner.z == 0);
+    CHECK(kept.size.z == 1);
 }
 
 TEST_CASE("patchExemplar: what is refused") {

@@ -73,6 +73,20 @@ TEST_CASE("evenSampling: a point too near goes, one that is missing comes back, 
     CHECK(dot(beside, beside) <= 2.0001f);
 }
 
+TEST_CASE("evenSampling: two points at one place count as one, one a little above the other too") {
+    test::PointShape plane = test::latticePlane(12);
+    plane.point.push_back({5.001f, 5, 0.02f});
+    plane.normal.push_back({0, 0, 1});
+    plane.point.push_back({7, 7, -0.03f});
+    plane.normal.push_back({0, 0, 1});
+    const PointSetSurface surface(plane.point, plane.normal);
+    EvenSamplingOptions options;
+    options.spacing = 1;
+    const EvenSampling even = evenSampling(surface, plane.point, plane.normal, {}, options);
+    CHECK(even.dropped == 2);
+    CHECK(even.points.size() == 144);
+}
+
 TEST_CASE("evenSampling: points at random on a sphere become even and stay on it") {
     const test::PointShape sphere = randomSphere(5000, 20);
     EvenSamplingOptions options;

@@ -31,7 +31,7 @@ double periodOf(int count, double step) {
 
 double wrappedTo(double x, double period) {
     const double inside = x - std::floor(x / period) * period;
-    return inside < period ? inside : 0;
+    return float(inside) < float(period) ? inside : 0;
 }
 
 class PartMaker {
@@ -81,11 +81,19 @@ private:
         return own;
     }
 
+    // Of a tile, what lies beside a patch may come round to columns that are the patch's own.
+    bool isNearest(std::int32_t number, int i, int j) const {
+        const LaidPatch& laid = mSource.arrangement.patches[std::size_t(number)];
+        const PatchPlace beside{laid.from.i + i - laid.at.i, laid.from.j + j - laid.at.j};
+        return sourceColumn(mSource.arrangement, laid, i, j) == beside;
+    }
+
     bool isOwn(std::int32_t number, const Vec3d& place) const {
         const PatchArrangement& a = mSource.arrangement;
-        const std::ptrdiff_t column =
-            a.columnAt(int(std::floor(place.x / a.lattice.step)), int(std::floor(place.y / a.lattice.step)));
-        if (column < 0) return false;
+        const int i = int(std::floor(place.x / a.lattice.step)),
+                  j = int(std::floor(place.y / a.lattice.step));
+        const std::ptrdiff_t column = a.columnAt(i, j);
+        if (column < 0 || !isNearest(number, i, j)) return false;
         const int k = std::clamp(int(std::floor(place.z / a.lattice.step)), 0, a.lattice.nz - 1);
         return a.label[std::size_t(column) * std::size_t(a.lattice.nz) + std::size_t(k)] == number;
     }

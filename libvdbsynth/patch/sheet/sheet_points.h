@@ -44,8 +44,8 @@ struct SheetResult {
 /// both sides are warped to the middle between them (compact_warp.h): the centres are feet of border nodes on
 /// the one side, spread at least a step apart, their moves half the way to the foot on the other side that
 /// faces the same way. What still disagrees is blended: points within two steps of a border are projected on
-/// the surface of all points there, less what the surface of the exemplar's points is off at their own. A
-/// patch's warp fades within `reach`, so that no error adds up.
+/// the surface of all points there, but keep what the exemplar's own surface smooths away. A patch's warp
+/// fades within `reach`, so that no error adds up.
 /// @param surface  of the exemplar's points   @param field  on it, that the arrangement was made by
 /// @throw Error InvalidOption (a field out of its range), Memory, Cancelled
 /// @par Cost    O(points)   @par Repeats same bits for any number of threads

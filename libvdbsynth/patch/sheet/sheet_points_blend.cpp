@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 namespace vdbsynth {
@@ -12,10 +13,9 @@ namespace {
 
 constexpr int kBlendRings = 2;  // of nodes beside a border whose points move
 
-// Rings of nodes whose points the surface at the moved ones depends on: the kernel's reach, and one more.
+// Rings of nodes whose points the surface at the moved ones depends on: 6.9 spacings, and one more.
 int supportRings(const SheetSource& source) {
-    const double reach =
-        3.5 * source.exemplar.kernel * source.exemplar.spacing / source.arrangement.lattice.step;
+    const double reach = 7 * source.exemplar.spacing / source.arrangement.lattice.step;
     return kBlendRings + int(std::ceil(reach)) + 1;
 }
 
@@ -29,123 +29,170 @@ std::size_t nodeOf(const PatchArrangement& a, const Vec3f& point) {
            std::size_t(at(point.z, a.lattice.nz));
 }
 
-// Spreads the moved points evenly; all others stay.
-void spread(const PointSetSurface& surface, const std::vector<std::uint32_t>& near,
-            const std::vector<std::uint8_t>& moves, double spacing, SheetPoints& sheet,
-            const RunContext& ctx) {
-    std::vector<Vec3f> points, normals;
-    std::vector<char> fixed;
-    for (std::size_t n = 0; n < near.size(); ++n) {
-        points.push_back(sheet.points[near[n]]);
-        normals.push_back(sheet.normals[near[n]]);
-        fixed.push_back(moves[n] ? 0 : 1);
+// A surface through points is smoother than they are. So that nothing is smoothed away where both sides
+// agree, points are put off it by as much as the exemplar's are off the exemplar's own.
+struct Detail {
+    float along = 0;  // [world] along the normal
+    Vec3f turn;       // of the normal
+};
+
+class BorderBlend {
+public:
+    BorderBlend(const SheetSource& source, SheetPoints& sheet, const RunContext& ctx)
+        : mSource(source), mArrangement(source.arrangement), mSheet(sheet), mContext(ctx) {}
+
+    void run() {
+        collect();
+        if (std::count(mMoves.begin(), mMoves.end(), std::uint8_t(1)) == 0) return;
+        PointSetSurfaceOptions options;
+        options.kernel = mSource.exemplar.kernel;
+        const PointSetSurface surface(mPoints, mNormals, options, mContext);
+        Stage stage(mContext, "blending borders", 2);
+        project(surface);
+        stage.advance();
+        replace(mSource.options.even ? spread(surface) : EvenSampling{mPoints, mNormals, all(), 0, 0});
+        stage.advance();
     }
-    EvenSamplingOptions options;
-    options.spacing = spacing;
-    options.rounds = 3;
-    const EvenSampling even = evenSampling(surface, points, normals, fixed, options, ctx);
-    SheetPoints result;
-    std::vector<std::uint8_t> replaced(sheet.size(), 0);
-    for (const std::uint32_t point : near) replaced[point] = 1;
-    const auto add = [&](std::size_t from, const Vec3f& point, const Vec3f& normal) {
-        result.points.push_back(point);
-        result.normals.push_back(normal);
-        result.source.push_back(sheet.source[from]);
-        result.patch.push_back(sheet.patch[from]);
-        result.blended.push_back(sheet.blended[from]);
-    };
-    for (std::size_t p = 0; p < sheet.size(); ++p)
-        if (!replaced[p]) add(p, sheet.points[p], sheet.normals[p]);
-    for (std::size_t p = 0; p < even.points.size(); ++p)
-        add(near[even.source[p]], even.points[p], even.normals[p]);
-    sheet = std::move(result);
-}
 
-// What a tile has beyond its sides: the points at the opposite ones.
-void addPeriods(const SheetSource& source, int rings, std::vector<Vec3f>& points,
-                std::vector<Vec3f>& normals) {
-    const PatchLattice& l = source.arrangement.lattice;
-    const double width = l.nx * l.step, depth = l.ny * l.step, reach = rings * l.step;
-    const std::size_t count = points.size();
-    for (int i = -1; i <= 1; ++i)
-        for (int j = -1; j <= 1; ++j) {
-            if (i == 0 && j == 0) continue;
-            for (std::size_t p = 0; p < count; ++p) {
-                const Vec3d at = cast<double>(points[p]) + Vec3d{i * width, j * depth, 0};
-                if (at.x < -reach || at.y < -reach || at.x > width + reach || at.y > depth + reach) continue;
-                points.push_back(cast<float>(at));
-                normals.push_back(normals[p]);
+private:
+    void collect() {
+        const int support = supportRings(mSource);
+        const auto distance = borderDistance(mArrangement, support + 1, mContext);
+        for (std::size_t p = 0; p < mSheet.size(); ++p) {
+            const int ring = distance[nodeOf(mArrangement, mSheet.points[p])];
+            if (ring > support) continue;
+            add(p, mSheet.points[p], ring, false);
+            if (mArrangement.tile) addCopies(p, ring, (support + 1) * mArrangement.lattice.step);
+        }
+    }
+
+    void add(std::size_t p, const Vec3f& place, int ring, bool copy) {
+        mPoints.push_back(place);
+        mNormals.push_back(mSheet.normals[p]);
+        mNumber.push_back(std::uint32_t(p));
+        mMoves.push_back(ring < kBlendRings ? 1 : 0);
+        mCopy.push_back(copy ? 1 : 0);
+    }
+
+    // What a tile's point is across its ends: both see the same around them, and move as one. Copies come
+    // next to their point, so that of two points too near the same one stays on both sides.
+    void addCopies(std::size_t p, int ring, double reach) {
+        const double nx = periodAlong(0), ny = periodAlong(1);
+        for (int i = -1; i <= 1; ++i)
+            for (int j = -1; j <= 1; ++j) {
+                const Vec3d at = cast<double>(mSheet.points[p]) + Vec3d{i * nx, j * ny, 0};
+                if ((i == 0 && j == 0) || at.x < -reach || at.y < -reach || at.x > nx + reach ||
+                    at.y > ny + reach)
+                    continue;
+                add(p, cast<float>(at), ring, true);
             }
-        }
-}
+    }
 
-// How far the surface of the exemplar's points is from each of those that are needed, along its normal: what
-// a fit makes of curvature and noise.
-std::vector<float> fitErrors(const SheetSource& source, const SheetPoints& sheet, const RunContext& ctx) {
-    const PatchExemplar& exemplar = source.exemplar;
-    std::vector<std::uint8_t> needed(exemplar.points.size(), 0);
-    for (std::size_t p = 0; p < sheet.size(); ++p)
-        if (sheet.blended[p]) needed[sheet.source[p]] = 1;
-    std::vector<float> error(exemplar.points.size(), 0.f);
-    parallelFor(ctx, error.size(), 256, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p < end; ++p) {
-            if (!needed[p]) continue;
-            const Vec3d place = cast<double>(exemplar.points[p]), normal = cast<double>(exemplar.normals[p]);
-            const auto foot = source.surface.project(place, normal);
-            if (foot && length(foot->point - place) < exemplar.spacing)
-                error[p] = float(dot(foot->point - place, foot->normal));
+    double periodAlong(int axis) const {
+        return (axis == 0 ? mArrangement.lattice.nx : mArrangement.lattice.ny) * mArrangement.lattice.step;
+    }
+
+    // Points without a surface that faces their way stay.
+    void project(const PointSetSurface& surface) {
+        const double most = 2 * mSource.exemplar.spacing;
+        parallelFor(mContext, mPoints.size(), 256, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t n = begin; n < end; ++n) {
+                if (!mMoves[n]) continue;
+                const Vec3d place = cast<double>(mPoints[n]), normal = cast<double>(mNormals[n]);
+                const auto foot = surface.project(place, normal);
+                mMoves[n] = foot && length(foot->point - place) < most && dot(foot->normal, normal) > 0;
+                if (!mMoves[n]) continue;
+                mPoints[n] = cast<float>(foot->point);
+                mNormals[n] = cast<float>(foot->normal);
+            }
+        });
+    }
+
+    // Only the moved points are spread.
+    EvenSampling spread(const PointSetSurface& surface) const {
+        std::vector<char> fixed;
+        for (const std::uint8_t moves : mMoves) fixed.push_back(moves ? 0 : 1);
+        EvenSamplingOptions options;
+        options.spacing = mSource.exemplar.spacing;
+        options.rounds = 3;
+        return evenSampling(surface, mPoints, mNormals, fixed, options, mContext);
+    }
+
+    std::vector<std::uint32_t> all() const {
+        std::vector<std::uint32_t> numbers(mPoints.size());
+        for (std::size_t n = 0; n < numbers.size(); ++n) numbers[n] = std::uint32_t(n);
+        return numbers;
+    }
+
+    void replace(const EvenSampling& even) {
+        SheetPoints result;
+        std::vector<std::uint8_t> replaced(mSheet.size(), 0);
+        for (const std::uint32_t number : mNumber) replaced[number] = 1;
+        const auto append = [&](std::size_t from, const Vec3f& point, const Vec3f& normal, bool blended) {
+            result.points.push_back(point);
+            result.normals.push_back(normal);
+            result.source.push_back(mSheet.source[from]);
+            result.patch.push_back(mSheet.patch[from]);
+            result.blended.push_back(blended ? 1 : 0);
+        };
+        for (std::size_t p = 0; p < mSheet.size(); ++p)
+            if (!replaced[p]) append(p, mSheet.points[p], mSheet.normals[p], false);
+        const std::vector<Detail> detail = details();
+        for (std::size_t e = 0; e < even.points.size(); ++e) {
+            const std::uint32_t near = even.source[e], number = mNumber[near];
+            if (mCopy[near]) continue;
+            const Detail lost = mMoves[near] ? detail[mSheet.source[number]] : Detail{};
+            append(number, onTile(even.points[e] + even.normals[e] * lost.along),
+                   mMoves[near] ? normalized(even.normals[e] + lost.turn) : even.normals[e], mMoves[near]);
         }
-    });
-    return error;
-}
+        mSheet = std::move(result);
+    }
+
+    // Of the exemplar's points that were moved; others have none.
+    std::vector<Detail> details() const {
+        const PatchExemplar& exemplar = mSource.exemplar;
+        std::vector<std::uint8_t> used(exemplar.points.size(), 0);
+        for (std::size_t n = 0; n < mNumber.size(); ++n)
+            if (mMoves[n]) used[mSheet.source[mNumber[n]]] = 1;
+        std::vector<Detail> details(used.size());
+        parallelFor(mContext, used.size(), 256, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t p = begin; p < end; ++p) {
+                if (!used[p]) continue;
+                const Vec3d place = cast<double>(exemplar.points[p]),
+                            normal = cast<double>(exemplar.normals[p]);
+                const auto foot = mSource.surface.project(place, normal);
+                if (!foot || length(foot->point - place) > exemplar.spacing) continue;
+                details[p] = {float(dot(place - foot->point, foot->normal)),
+                              cast<float>(normal - foot->normal)};
+            }
+        });
+        return details;
+    }
+
+    Vec3f onTile(Vec3f point) const {
+        if (!mArrangement.tile) return point;
+        for (const int axis : {0, 1}) {
+            const float period = float(periodAlong(axis));
+            if (point[axis] < 0) point[axis] += period;
+            if (point[axis] >= period) point[axis] -= period;
+        }
+        return point;
+    }
+
+    const SheetSource& mSource;
+    const PatchArrangement& mArrangement;
+    SheetPoints& mSheet;
+    const RunContext& mContext;
+    // Near borders; of a tile with copies across its ends.
+    std::vector<Vec3f> mPoints, mNormals;
+    std::vector<std::uint32_t> mNumber;  // of the sheet's points
+    std::vector<std::uint8_t> mMoves, mCopy;
+};
 
 }  // namespace
 
 void blendBorders(const SheetSource& source, SheetPoints& sheet, const RunContext& ctx) {
-    const int support = supportRings(source);
-    const std::vector<std::uint8_t> distance = borderDistance(source.arrangement, support + 1, ctx);
-    std::vector<Vec3f> points, normals;
-    std::vector<std::uint32_t> moving, near;
-    std::vector<std::uint8_t> moves;
-    for (std::size_t p = 0; p < sheet.size(); ++p) {
-        const int ring = distance[nodeOf(source.arrangement, sheet.points[p])];
-        if (ring > support) continue;
-        points.push_back(sheet.points[p]);
-        normals.push_back(sheet.normals[p]);
-        near.push_back(std::uint32_t(p));
-        moves.push_back(ring < kBlendRings ? 1 : 0);
-        if (ring < kBlendRings) moving.push_back(std::uint32_t(p));
-    }
-    if (moving.empty()) return;
-    PointSetSurfaceOptions options;
-    options.kernel = source.exemplar.kernel;
-    if (source.arrangement.tile) addPeriods(source, support, points, normals);
-    const PointSetSurface surface(std::move(points), std::move(normals), options, ctx);
-    std::vector<Vec3f> moved(moving.size()), turned(moving.size());
-    std::vector<std::uint8_t> held(moving.size());
-    Stage stage(ctx, "blending borders", 1);
-    parallelFor(ctx, moving.size(), 256, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t m = begin; m < end; ++m) {
-            const std::uint32_t p = moving[m];
-            const Vec3d place = cast<double>(sheet.points[p]), normal = cast<double>(sheet.normals[p]);
-            const auto foot = surface.project(place, normal);
-            const bool holds = foot && length(foot->point - place) < 2 * source.exemplar.spacing &&
-                               dot(foot->normal, normal) > 0;
-            held[m] = holds ? 1 : 0;
-            moved[m] = holds ? cast<float>(foot->point) : sheet.points[p];
-            turned[m] = holds ? cast<float>(foot->normal) : sheet.normals[p];
-        }
-    });
-    for (std::size_t m = 0; m < moving.size(); ++m) {
-        sheet.points[moving[m]] = moved[m];
-        sheet.normals[moving[m]] = turned[m];
-        sheet.blended[moving[m]] = held[m];
-    }
-    if (source.options.even) spread(surface, near, moves, source.exemplar.spacing, sheet, ctx);
-    const std::vector<float> error = fitErrors(source, sheet, ctx);
-    for (std::size_t p = 0; p < sheet.size(); ++p)
-        if (sheet.blended[p]) sheet.points[p] = sheet.points[p] - sheet.normals[p] * error[sheet.source[p]];
-    stage.advance();
+    BorderBlend(source, sheet, ctx).run();
 }
 
 }  // namespace vdbsynth

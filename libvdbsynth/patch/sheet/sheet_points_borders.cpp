@@ -99,7 +99,10 @@ private:
         const Vec3d across = Vec3d{there.i - si + mPatch.fine.x - laid.fine.x,
                                    there.j - sj + mPatch.fine.y - laid.fine.y, mPatch.fine.z - laid.fine.z} *
                              step;
-        const auto foot = mSource.surface.project(here->point + across, here->normal);
+        // Where both sides are the same part of the exemplar, nothing moves, not even by a projection's
+        // error.
+        const bool same = length(across) == 0;
+        const auto foot = same ? here : mSource.surface.project(here->point + across, here->normal);
         if (!foot || dot(foot->normal, here->normal) < kSameWay) return;
         const Vec3d move = foot->point - across - here->point;
         if (length(move) > mSource.options.limit * step) return;

@@ -53,8 +53,9 @@ std::vector<BorderPair> borderPairs(const SheetSource& source, std::int32_t patc
 std::vector<std::uint8_t> borderDistance(const PatchArrangement& arrangement, int most,
                                          const RunContext& ctx);
 
-/// Projects points near borders on the surface of all points near them, and drops those too near to one of
-/// another patch.
+/// Projects points near borders on the surface of all points near them, spreads them evenly there and puts
+/// them off it by as much as the exemplar's points are off the exemplar's own: where both sides agree nothing
+/// is smoothed away. A tile's ends are borders like others.
 void blendBorders(const SheetSource& source, SheetPoints& sheet, const RunContext& ctx);
 
 }  // namespace vdbsynth

@@ -157,6 +157,9 @@ TEST_CASE("layPatches: what is refused") {
         bad.repairs = repairs;
         CHECK(code(8, 8, bad) == invalid);
     }
+    RunContext tight;
+    tight.maxMemory = 1000;
+    CHECK(test::thrownBy([&] { layPatches(field, 80, 80, good, tight); }).code == int(ErrorCode::Memory));
     LayoutOptions tile = good;
     tile.tile = true;
     CHECK(code(7, 8, tile) == invalid);

@@ -147,30 +147,31 @@ TEST_CASE("scanlinePatches: a plane stays one, evenly covered") {
     }
 }
 
-TEST_CASE("scanlinePatches: of a texture that repeats every few steps the heights are nearly the formula's") {
-    const test::EggCrate crate;
-    const PatchExemplar exemplar = test::eggCrateExemplar(crate, 48);
+TEST_CASE("scanlinePatches: of a texture that repeats the heights are nearly the formula's") {
+    // Gently curved: the paper's surface is off by h^2 over the radius.
+    const test::EggCrate crate{32, 2};
+    const PatchExemplar exemplar = test::eggCrateExemplar(crate, 64);
     ScanlineOptions options = small();
-    options.seed = PatchPlace{8, 8};
+    options.seed = PatchPlace{4, 4};
     options.relax = false;
     const ScanlineResult made = scanlinePatches(exemplar, paperField(exemplar), {64, 64, 0}, options);
-    // The seed patch lies a margin, 8, before the corner; its place is a whole period.
+    // The seed patch lies a margin, 8, before the corner; both are counted from a corner of the crate.
     double worst = 0, sum = 0;
     for (const Vec3f& p : made.sheet.points) {
         const double off =
-            std::abs(double(p.z) - crate.height - 2 - crate.at(double(p.x) + 8, double(p.y) + 8));
+            std::abs(double(p.z) - crate.height - 2 - crate.at(double(p.x) + 16, double(p.y) + 16));
         worst = std::max(worst, off);
         sum += off * off;
     }
-    CHECK(std::sqrt(sum / double(made.sheet.size())) < 0.15);
-    CHECK(worst < 0.6);
+    CHECK(std::sqrt(sum / double(made.sheet.size())) < 0.3);
+    CHECK(worst < 1);
     // The corner is the seed patch's own.
     std::size_t own = 0;
     for (std::size_t p = 0; p < made.sheet.size(); ++p) {
         const Vec3f& at = made.sheet.points[p];
         if (at.x >= 7 || at.y >= 7) continue;
         REQUIRE(made.sheet.patch[p] == 0);
-        REQUIRE(length(at + Vec3f{24, 24, 0} - exemplar.points[made.sheet.source[p]]) < 1e-5f);
+        REQUIRE(length(at + Vec3f{16, 16, 0} - exemplar.points[made.sheet.source[p]]) < 1e-5f);
         ++own;
     }
     CHECK(own > 40);

@@ -4,7 +4,7 @@
 #include "libvdbsynth/geometry/point_neighbours.h"
 #include "libvdbsynth/patch/sheet/sheet_points_steps.h"
 #include "tests/support/contexts.h"
-#include "tests/support/patch_shapes.h"
+#include "tests/support/patch_sheets.h"
 
 #include <catch2/catch.hpp>
 
@@ -15,49 +15,15 @@ using namespace vdbsynth;
 
 namespace {
 
-// An exemplar with all that is made of it.
-struct Texture {
-    PatchExemplar exemplar;
-    PatchField field;
-    PointSetSurface surface;
-
-    Texture(PatchExemplar made, double step)
-        : exemplar(std::move(made)),
-          field(test::measuredField(exemplar, step)),
-          surface(exemplar.points, exemplar.normals) {}
-
-    SheetResult sheet(const PatchArrangement& arrangement, const SheetOptions& options,
-                      const RunContext& ctx = {}) const {
-        return sheetPoints(exemplar, surface, field, arrangement, options, ctx);
-    }
-};
-
-const Texture& crates() {
-    static const Texture texture(test::eggCrateExemplar({}, 48), 2);
+const test::Texture& crates() {
+    static const test::Texture texture(test::eggCrateExemplar({}, 48), 2);
     return texture;
 }
 
 // A plane of 48 x 48, points at random places near those of a lattice.
-const Texture& plane() {
-    static const Texture texture(test::exemplarOf(test::eggCratePoints({16, 0}, 48, 8), 48), 2);
+const test::Texture& plane() {
+    static const test::Texture texture(test::exemplarOf(test::eggCratePoints({16, 0}, 48, 8), 48), 2);
     return texture;
-}
-
-// Patch 0 over the left half, patch 1 over the right.
-PatchArrangement halves(const Texture& texture, int nx, int ny, const LaidPatch& left,
-                        const LaidPatch& right) {
-    PatchArrangement sheet;
-    sheet.lattice = {texture.field.lattice.step, nx, ny, texture.field.lattice.nz};
-    sheet.patches = {left, right};
-    for (int i = 0; i < nx; ++i)
-        sheet.label.insert(sheet.label.end(), std::size_t(ny) * std::size_t(sheet.lattice.nz),
-                           i < nx / 2 ? 0 : 1);
-    return sheet;
-}
-
-// The exemplar's left 20 columns, as two patches that continue each other but for `fine`.
-PatchArrangement cutInTwo(const Texture& texture, const Vec3d& fine) {
-    return halves(texture, 20, 24, {{0, 0}, {0, 0}, 14, 24, {}, 0}, {{6, 0}, {6, 0}, 14, 24, fine, 0});
 }
 
 SheetOptions withReach(double reach, bool blend) {
@@ -75,7 +41,7 @@ bool sameBits(const std::vector<Vec3f>& a, const std::vector<Vec3f>& b) {
 }  // namespace
 
 TEST_CASE("sheetPoints: one patch gives the exemplar's points, bit for bit") {
-    const Texture& texture = crates();
+    const test::Texture& texture = crates();
     PatchArrangement whole;
     whole.lattice = texture.field.lattice;
     whole.patches = {{{0, 0}, {0, 0}, 24, 24, {}, 0}};
@@ -101,8 +67,8 @@ TEST_CASE("sheetPoints: one patch gives the exemplar's points, bit for bit") {
 }
 
 TEST_CASE("sheetPoints: patches that continue each other are not warped by over 1e-6 spacings") {
-    const Texture& texture = crates();
-    const SheetResult made = texture.sheet(cutInTwo(texture, {}), withReach(4, false));
+    const test::Texture& texture = crates();
+    const SheetResult made = texture.sheet(test::cutInTwo(texture, {}), withReach(4, false));
     CHECK(made.borders.apartBefore < 1e-6);
     CHECK(made.borders.apartAfter < 1e-6);
     CHECK(made.borders.shrunk == 0);
@@ -118,9 +84,9 @@ TEST_CASE("sheetPoints: patches that continue each other are not warped by over 
 }
 
 TEST_CASE("sheetPoints: sides apart meet in the middle, and nothing beyond the reach moves") {
-    const Texture& texture = plane();
+    const test::Texture& texture = plane();
     // The right side half a step, a spacing, higher.
-    const PatchArrangement sheet = cutInTwo(texture, {0, 0, 0.5});
+    const PatchArrangement sheet = test::cutInTwo(texture, {0, 0, 0.5});
     const SheetResult before = texture.sheet(sheet, withReach(0, false)),
                       after = texture.sheet(sheet, withReach(5, false));
     CHECK(before.borders.warps == 0);
@@ -129,9 +95,11 @@ TEST_CASE("sheetPoints: sides apart meet in the middle, and nothing beyond the r
     CHECK(after.borders.apartBefore == Approx(1).epsilon(0.01));
     CHECK(after.borders.apartAfter < 0.1);
     REQUIRE(after.sheet.size() == before.sheet.size());
+    const double floor = double(texture.exemplar.points[0].z);
     for (std::size_t p = 0; p < after.sheet.size(); ++p) {
         const double off = std::abs(double(before.sheet.points[p].x) - 20);
-        const double z = double(after.sheet.points[p].z), was = double(before.sheet.points[p].z);
+        const double z = double(after.sheet.points[p].z) - floor,
+                     was = double(before.sheet.points[p].z) - floor;
         REQUIRE(was == Approx(after.sheet.patch[p] == 0 ? 0 : 1).margin(1e-5));
         if (off > 2 + 10) REQUIRE(z == was);
         if (off < 1) REQUIRE(z == Approx(0.5).margin(0.1));
@@ -140,8 +108,8 @@ TEST_CASE("sheetPoints: sides apart meet in the middle, and nothing beyond the r
 }
 
 TEST_CASE("sheetPoints: sides farther apart than the limit are left as they are") {
-    const Texture& texture = plane();
-    const PatchArrangement sheet = cutInTwo(texture, {0, 0, 0.5});
+    const test::Texture& texture = plane();
+    const PatchArrangement sheet = test::cutInTwo(texture, {0, 0, 0.5});
     SheetOptions options = withReach(5, false);
     options.limit = 0.4;
     const SheetResult left = texture.sheet(sheet, options), as = texture.sheet(sheet, withReach(0, false));
@@ -150,10 +118,10 @@ TEST_CASE("sheetPoints: sides farther apart than the limit are left as they are"
 }
 
 TEST_CASE("sheetPoints: only points at borders are blended, and lie evenly there") {
-    const Texture& texture = crates();
+    const test::Texture& texture = crates();
     // The right half from a period farther on, moved by a third of a step along y.
-    PatchArrangement sheet =
-        halves(texture, 20, 24, {{0, 0}, {0, 0}, 12, 24, {}, 0}, {{16, 0}, {8, 0}, 8, 24, {0, 0.15, 0}, 0});
+    PatchArrangement sheet = test::halves(texture, 20, 24, {{0, 0}, {0, 0}, 12, 24, {}, 0},
+                                          {{16, 0}, {8, 0}, 8, 24, {0, 0.15, 0}, 0});
     sheet.patches[1].nx = 8;
     for (int i = 16; i < 20; ++i)  // beyond the exemplar's end: nothing
         std::fill_n(sheet.label.begin() + std::ptrdiff_t(sheet.lattice.column(i, 0)) * sheet.lattice.nz,
@@ -171,10 +139,10 @@ TEST_CASE("sheetPoints: only points at borders are blended, and lie evenly there
         }
         if (std::abs(at.x - 20) > 8 || at.y < 2 || at.y > 46) continue;
         // Between the two phases.
-        const double low = std::min(crate.at(at.x, at.y), crate.at(at.x, at.y - 0.3)),
-                     high = std::max(crate.at(at.x, at.y), crate.at(at.x, at.y - 0.3));
-        REQUIRE(at.z > low - 0.1);
-        REQUIRE(at.z < high + 0.1);
+        const double z = at.z - crate.height - 2, one = crate.at(at.x, at.y),
+                     other = crate.at(at.x, at.y - 0.3);
+        REQUIRE(z > std::min(one, other) - 0.1);
+        REQUIRE(z < std::max(one, other) + 0.1);
         std::uint32_t number[2];
         float squared[2];
         neighbours.nearest(made.sheet.points[p], 2, number, squared);
@@ -185,22 +153,29 @@ TEST_CASE("sheetPoints: only points at borders are blended, and lie evenly there
     CHECK(made.borders.apartBefore > made.borders.apartAfter);
 }
 
-TEST_CASE("sheetPoints: a tile's points lie in its period") {
-    const Texture& texture = crates();
-    PatchArrangement tile =
-        halves(texture, 16, 16, {{0, 0}, {0, 0}, 10, 18, {}, 0}, {{6, 0}, {6, 0}, 12, 18, {0.3, -0.4, 0}, 0});
+TEST_CASE("sheetPoints: a tile's points lie in its period, each once") {
+    const test::Texture& texture = crates();
+    // Patches as deep as the tile: what is beside a patch comes round to its other side.
+    PatchArrangement tile = test::halves(texture, 16, 16, {{0, 0}, {0, 0}, 10, 16, {}, 0},
+                                         {{6, 3}, {6, 0}, 10, 16, {0.3, -0.4, 0}, 0});
     tile.tile = true;
+    const SheetResult plain = texture.sheet(tile, withReach(0, false));
+    CHECK(double(plain.sheet.size()) == Approx(32 * 32).epsilon(0.03));
+    std::vector<std::pair<std::int32_t, std::uint32_t>> copies;
+    for (std::size_t p = 0; p < plain.sheet.size(); ++p)
+        copies.emplace_back(plain.sheet.patch[p], plain.sheet.source[p]);
+    std::sort(copies.begin(), copies.end());
+    CHECK(std::unique(copies.begin(), copies.end()) == copies.end());
     const SheetResult made = texture.sheet(tile, withReach(3, true));
-    CHECK(made.sheet.size() > 900);
-    CHECK(made.sheet.size() < 1150);
+    CHECK(double(made.sheet.size()) == Approx(32 * 32).epsilon(0.06));
     for (const Vec3f& p : made.sheet.points) {
-        REQUIRE((p.x >= 0 && p.x <= 32));
-        REQUIRE((p.y >= 0 && p.y <= 32));
+        REQUIRE((p.x >= 0 && p.x < 32));
+        REQUIRE((p.y >= 0 && p.y < 32));
     }
 }
 
 TEST_CASE("sheetPoints: where nothing lies there are no points") {
-    const Texture& texture = plane();
+    const test::Texture& texture = plane();
     PatchArrangement empty;
     empty.lattice = texture.field.lattice;
     empty.label.assign(empty.lattice.nodes(), PatchArrangement::kNone);
@@ -211,8 +186,8 @@ TEST_CASE("sheetPoints: where nothing lies there are no points") {
 }
 
 TEST_CASE("sheetPoints: what is refused") {
-    const Texture& texture = plane();
-    const PatchArrangement sheet = cutInTwo(texture, {});
+    const test::Texture& texture = plane();
+    const PatchArrangement sheet = test::cutInTwo(texture, {});
     const auto code = [&](const SheetOptions& options) {
         return test::thrownBy([&] { texture.sheet(sheet, options); }).code;
     };
@@ -254,8 +229,8 @@ TEST_CASE("borderDistance: rings of nodes around each border, as by looking at a
 }
 
 TEST_CASE("sheetPoints: same bits for any number of threads, and cancelled", "[patch][tsan]") {
-    const Texture& texture = crates();
-    const PatchArrangement sheet = cutInTwo(texture, {0.3, 0.2, 0.1});
+    const test::Texture& texture = crates();
+    const PatchArrangement sheet = test::cutInTwo(texture, {0.3, 0.2, 0.1});
     const SheetResult one = texture.sheet(sheet, withReach(4, true), test::onThreads(1)),
                       three = texture.sheet(sheet, withReach(4, true), test::onThreads(3));
     CHECK(sameBits(one.sheet.points, three.sheet.points));

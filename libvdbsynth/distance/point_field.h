@@ -16,9 +16,12 @@ struct PointSolid {
     double solidShare = 1;  ///< of the points, those that clearly have an inside and an outside
 };
 
-/// Within 2.5 spacings of a point the value is the moving least squares one of the tangent planes of the
-/// twelve nearest points [kolluri2008, Eq. 2]; farther away the sign is that of the winding number of the
-/// points' areas [barill2018], which closes gaps smoothly.
+/// Within 2.5 spacings of a point the value is made of the twelve nearest points: the distance to the sphere
+/// fitted to them and their normals [guennebaud2007], which is right on what is smooth, and the moving least
+/// squares one of their tangent planes [kolluri2008, Eq. 2], which is best at creases and on flat faces. They
+/// share by how well plane and sphere explain the points, the planes alone where normals vary more than on a
+/// sphere. Farther away the sign is that of the winding number of the points' areas [barill2018], which
+/// closes gaps smoothly.
 /// @param cloud  in index space, normals outward, at least 8 points
 /// @par Cost    some microseconds for each voxel near a point
 /// @par Repeats same bits for any number of threads

@@ -7,6 +7,7 @@
 
 #include "libvdbsynth/math/lattice.h"
 #include "tests/support/contexts.h"
+#include "tests/support/point_shapes.h"
 
 using namespace vdbsynth;
 
@@ -59,6 +60,21 @@ TEST_CASE("pointField: of points on a ball, its level is the ball's", "[distance
     CHECK(farthest < 0.15);
     // All that is within the limit of the points is in the field.
     CHECK(solid.field.box().contains(IndexBox{{4, -20, -8}, {36, 12, 23}}));
+}
+
+TEST_CASE("pointField: few points on a ball give it to a hundredth of their spacing", "[distance][oracle]") {
+    // 3.3 voxels apart. Their tangent planes alone would give a ball that is 0.2 voxels too large.
+    const test::PointShape sphere = test::spiralSphere(200, kRadius);
+    PointCloud few;
+    few.normals = sphere.normal;
+    for (const Vec3f& p : sphere.point) few.points.push_back(kCentre + p);
+    const BrickField field = pointField(few).field;
+    double largest = 0;
+    forEachVoxel(field.box(), [&](const Index3& p) {
+        const double d = ballDistance(p);
+        if (std::abs(d) < 1) largest = std::max(largest, std::abs(double(field.at(p)) - d));
+    });
+    CHECK(largest < 0.03);
 }
 
 TEST_CASE("pointField: a sheet has no inside, and as a shell its thickness", "[distance][oracle]") {

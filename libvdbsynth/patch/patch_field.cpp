@@ -12,12 +12,15 @@
 namespace vdbsynth {
 namespace {
 
+constexpr float kUnder = 0.5f;  // of a gradient's height
 constexpr double kMostNodes = 2147483648.0;
 
 // The nodes that no point is near are inside only under a node that is, down to another one or to the bottom:
 // a solid has a top. So a tube that ends open is not drawn out upward.
 void fillColumn(float* column, int nz, const std::vector<bool>& known) {
     const auto inside = [&](int k) { return column[k * kFieldValues] < 0; };
+    // Of a node under a top: the surface is above it. Feet beyond a surface's open edge are beside it.
+    const auto under = [&](int k) { return inside(k) && column[k * kFieldValues + 3] > kUnder; };
     int above = nz;  // the nearest known node upward, nz: none
     for (int k = nz - 1; k >= 0; --k) {
         if (known[std::size_t(k)]) {
@@ -26,7 +29,7 @@ void fillColumn(float* column, int nz, const std::vector<bool>& known) {
         }
         int below = k - 1;
         while (below >= 0 && !known[std::size_t(below)]) --below;
-        const bool solid = above < nz && inside(above) && (below < 0 || inside(below));
+        const bool solid = above < nz && (below < 0 ? under(above) : inside(above) && inside(below));
         for (; k > below; --k) column[k * kFieldValues] = solid ? -kFieldReach : kFieldReach;
         ++k;
     }

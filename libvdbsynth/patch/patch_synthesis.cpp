@@ -18,7 +18,7 @@
 namespace vdbsynth {
 namespace {
 
-constexpr double kOverlap = 0.25;
+constexpr double kOverlap = 1.0 / 3;
 constexpr int kProbes = 8;
 
 double secondsSince(std::chrono::steady_clock::time_point begin) {

@@ -19,7 +19,7 @@ struct PatchOptions {
     /// less of the surface around them.
     double border = 0;
     double patch = 0;        ///< [world] side of a patch; 0: one and a half features (patch_size.h)
-    double overlap = 0;      ///< 0.05..0.8 of a patch over earlier ones; 0: a quarter
+    double overlap = 0;      ///< 0.05..0.8 of a patch over earlier ones; 0: a third
     double tolerance = 0.1;  ///< 0..10, e: candidates within (1 + e) of the best are drawn from
     double step = 0;  ///< [spacings] 0.5..64, of the field that patches are compared by; 0: see fieldStep
 

@@ -28,7 +28,7 @@ std::vector<Option> sheetTable() {
         real("overlap", "SHARE", 0.05, 0.8)
             .in(Group::Method)
             .says("how far a patch reaches over earlier ones, as a share of its side")
-            .otherwiseIs("0.25")
+            .otherwiseIs("a third")
             .takenBy(kPatch),
         real("tolerance", "E", 0, 10)
             .in(Group::Method)

@@ -20,6 +20,8 @@ constexpr double kOpposite = -0.25;   // cosine between the normals of two sides
 // Variance of normals about a fitted sphere's from which on it loses its share, and at which it has none.
 // Noise has up to 0.05, a right angle from 0.2 on (chosen on a CAD part, scans and smooth models with noise).
 constexpr double kSmooth = 0.05, kCrease = 0.4;
+// Spacings from the nearest point, up to which a sphere has its share, and from which on it has none.
+constexpr double kNear = 1.25, kAfar = 2;
 constexpr float kReach = 2.5f;  // spacings from a point within which the points alone decide
 
 // A point near a voxel, relative to it.
@@ -184,8 +186,13 @@ private:
             // No sphere goes through two sides of a thin wall.
             if (dot(all[k].normal, all[0].normal) > kOpposite) sheet[ofSheet++] = all[k];
         }
+        // From afar a few points with noise extrapolate to any sphere.
+        const double away = std::sqrt(double(squared[0])) / double(mSpacing[numbers[0]]);
+        const double near = std::clamp((kAfar - away) / (kAfar - kNear), 0.0, 1.0);
+        if (near <= 0) return planesDistance(all, found);
         const FittedSphere sphere = fittedSphere(sheet, ofSheet);
-        return sphere.share * sphere.distance + (1 - sphere.share) * planesDistance(all, found);
+        const double share = near * sphere.share;
+        return share * sphere.distance + (1 - share) * planesDistance(all, found);
     }
 
     const PointCloud& mCloud;

@@ -1,13 +1,18 @@
 #include "libvdbsynth/patch/patch_size.h"
 
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 #include <vector>
 
 namespace vdbsynth {
 namespace {
 
+constexpr double kOverlap = 1.0 / 3;
 constexpr double kRise = 0.1, kUncorrelated = 0.2;
 constexpr double kFlat = 1e-12;  // [steps^2] the rounding of a mean
 
@@ -78,6 +83,37 @@ PatchFeature patchFeature(const PatchField& exemplar, const RunContext& ctx) {
 int patchSide(const PatchField& exemplar, const PatchFeature& feature) {
     const int shorter = std::min(exemplar.lattice.nx, exemplar.lattice.ny);
     return std::max(std::min(shorter, 2), std::min(std::max(6, feature.columns * 3 / 2), shorter * 2 / 3));
+}
+
+PatchSides patchSides(const PatchField& field, double patch, double overlap, const RunContext& ctx) {
+    const PatchLattice& l = field.lattice;
+    PatchSides sides;
+    if (patch > 0) {
+        sides.patch = int(std::lround(patch / l.step));
+        if (sides.patch > std::min(l.nx, l.ny))
+            throw Error(ErrorCode::Unusable, "`patch` " + roundedText(patch, 4) +
+                                                 " is larger than the exemplar, " +
+                                                 roundedText(std::min(l.nx, l.ny) * l.step, 4) + " wide");
+        if (sides.patch < 4)
+            throw Error(ErrorCode::InvalidOption, "`patch` " + roundedText(patch, 4) +
+                                                      " is under four steps of the field, " +
+                                                      roundedText(4 * l.step, 4));
+    } else {
+        const PatchFeature feature = patchFeature(field, ctx);
+        sides.patch = patchSide(field, feature);
+        message(
+            ctx, MessageLevel::Detail,
+            std::string(feature.repeats ? "the exemplar repeats every " : "the exemplar's features are ") +
+                roundedText(feature.columns * l.step, 4) + (feature.repeats ? "" : " wide") +
+                "; patches are " + roundedText(sides.patch * l.step, 4) + " wide (world)");
+        if (sides.patch < 4)
+            throw Error(ErrorCode::Unusable,
+                        "the exemplar is only " + roundedText(std::min(l.nx, l.ny) * l.step, 4) +
+                            " wide, too small for a patch of four steps of " + roundedText(l.step, 4));
+    }
+    const double share = overlap > 0 ? overlap : kOverlap;
+    sides.overlap = std::clamp(int(std::lround(share * sides.patch)), 2, sides.patch - 1);
+    return sides;
 }
 
 }  // namespace vdbsynth

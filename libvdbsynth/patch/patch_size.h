@@ -21,4 +21,16 @@ PatchFeature patchFeature(const PatchField& exemplar, const RunContext& ctx = {}
 /// thirds of the exemplar's shorter side, so that there are places to choose from.
 int patchSide(const PatchField& exemplar, const PatchFeature& feature);
 
+/// [columns] of a patch, and of it what reaches over others.
+struct PatchSides {
+    int patch = 0, overlap = 0;
+};
+
+/// As given, or as the exemplar says: a patch of patchSide, an overlap of a third of it.
+/// @param patch    [world] side; 0: as the exemplar says   @param overlap  share of the side; 0: a third
+/// @throw Error Unusable (an exemplar too small for that patch, or for one of four columns), InvalidOption (a
+/// patch under four columns)
+/// @par Repeats as patchFeature
+PatchSides patchSides(const PatchField& field, double patch, double overlap, const RunContext& ctx = {});
+
 }  // namespace vdbsynth

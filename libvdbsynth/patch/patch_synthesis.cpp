@@ -18,7 +18,6 @@
 namespace vdbsynth {
 namespace {
 
-constexpr double kOverlap = 1.0 / 3;
 constexpr int kProbes = 8;
 
 double secondsSince(std::chrono::steady_clock::time_point begin) {
@@ -30,42 +29,6 @@ PointSetSurface surfaceOf(const PatchExemplar& exemplar, PointSetKind kind, cons
     options.kind = kind;
     options.kernel = exemplar.kernel;
     return PointSetSurface(exemplar.points, exemplar.normals, options, ctx);
-}
-
-// In columns of the field.
-struct PatchSides {
-    int patch = 0, overlap = 0;
-};
-
-PatchSides sidesOf(const PatchField& field, const PatchOptions& options, const RunContext& ctx) {
-    const PatchLattice& l = field.lattice;
-    PatchSides sides;
-    if (options.patch > 0) {
-        sides.patch = int(std::lround(options.patch / l.step));
-        if (sides.patch > std::min(l.nx, l.ny))
-            throw Error(ErrorCode::Unusable, "`patch` " + roundedText(options.patch, 4) +
-                                                 " is larger than the exemplar, " +
-                                                 roundedText(std::min(l.nx, l.ny) * l.step, 4) + " wide");
-        if (sides.patch < 4)
-            throw Error(ErrorCode::InvalidOption, "`patch` " + roundedText(options.patch, 4) +
-                                                      " is under four steps of the field, " +
-                                                      roundedText(4 * l.step, 4));
-    } else {
-        const PatchFeature feature = patchFeature(field, ctx);
-        sides.patch = patchSide(field, feature);
-        message(
-            ctx, MessageLevel::Detail,
-            std::string(feature.repeats ? "the exemplar repeats every " : "the exemplar's features are ") +
-                roundedText(feature.columns * l.step, 4) + (feature.repeats ? "" : " wide") +
-                "; patches are " + roundedText(sides.patch * l.step, 4) + " wide (world)");
-        if (sides.patch < 4)
-            throw Error(ErrorCode::Unusable,
-                        "the exemplar is only " + roundedText(std::min(l.nx, l.ny) * l.step, 4) +
-                            " wide, too small for a patch of four steps of " + roundedText(l.step, 4));
-    }
-    const double share = options.overlap > 0 ? options.overlap : kOverlap;
-    sides.overlap = std::clamp(int(std::lround(share * sides.patch)), 2, sides.patch - 1);
-    return sides;
 }
 
 int wholeColumns(double side, double step) {
@@ -219,7 +182,7 @@ PatchResult synthesizePatches(const PatchExemplar& exemplar, const PatchOptions&
     const PatchField field =
         patchField(surface, exemplar.points, latticeOf(exemplar.size, fieldStep(exemplar, options)), {},
                    kFieldReach, ctx);
-    const PatchSides sides = sidesOf(field, options, ctx);
+    const PatchSides sides = patchSides(field, options.patch, options.overlap, ctx);
     const double prepared = secondsSince(begin);
     PatchResult result = paper ? byPaper(exemplar, field, sides, options, ctx)
                                : byCuts(exemplar, surface, field, sides, options, ctx);

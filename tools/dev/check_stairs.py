@@ -11,7 +11,7 @@ for room, direct in [
     ("base", []), ("math", ["base"]), ("geometry", ["math"]), ("points", ["geometry"]), ("grid", ["geometry"]),
     ("distance", ["grid"]), ("solid", ["distance"]), ("raster", ["distance"]), ("map", ["grid"]),
     ("io", ["raster", "solid"]), ("procedural", ["distance"]), ("surface", ["grid", "points"]), ("search", ["io"]),
-    ("coordinates", ["search", "surface"]), ("patch", ["points"]), ("texture", ["coordinates", "map"]), ("relief", ["coordinates", "map", "distance"]),
+    ("coordinates", ["search", "surface"]), ("patch", ["coordinates"]), ("texture", ["coordinates", "map"]), ("relief", ["coordinates", "map", "distance"]),
     ("synth", ["search", "map"]), ("analogy", ["search", "surface", "map"]), ("measure", ["relief", "synth"]),
     ("vdb", ["io", "map", "solid"]), ("render", ["vdb"]),
     ("pipeline", ["measure", "synth", "analogy", "patch", "texture", "relief", "procedural", "render"]), ("tools", ["pipeline"]),

@@ -69,18 +69,6 @@ PatchOptions parseOptions(const Arguments& arguments) {
     return options;
 }
 
-PatchSourceOptions sourceOptionsOf(const Run& run) {
-    PatchSourceOptions options;
-    options.model = run.modelOptions();
-    if (run.arguments.has("plane")) {
-        const std::string plane = run.arguments.text("plane");
-        options.plane = plane == "xy" ? PatchPlane::XY : plane == "yz" ? PatchPlane::YZ : PatchPlane::ZX;
-    }
-    if (run.arguments.has("margin")) options.margin = run.arguments.real("margin");
-    validate(options);
-    return options;
-}
-
 void setSize(const Arguments& arguments, const PatchExemplar& exemplar, PatchOptions& options) {
     const auto sizes = arguments.sheetSizes("size");
     options.width = sizes[0].multiple ? sizes[0].value * exemplar.size.x : sizes[0].value;
@@ -126,11 +114,16 @@ void report(Run& run, const PatchSource& source, const PatchSheet& sheet) {
 void patch(Run& run) {
     run.requireInputs(1, 1);
     const Arguments& arguments = run.arguments;
+    if (arguments.has("onto")) return patchOntoModel(run);
+    for (const char* name : {"direction", "scale", "height-offset", "with-model"})
+        if (arguments.has(name))
+            throw Error(ErrorCode::InvalidOption,
+                        std::string("--") + name + ": has no effect without --onto");
     PatchOptions options = parseOptions(arguments);
     if (!arguments.has("size"))
         throw Error(ErrorCode::InvalidOption,
-                    "--size: is missing; give the sheet's, for example --size 4x,4x");
-    const PatchSourceOptions sourceOptions = sourceOptionsOf(run);
+                    "--size: is missing; give the sheet's, for example --size 4x,4x, or --onto MODEL");
+    const PatchSourceOptions sourceOptions = patchSourceOptions(run);
     const std::vector<std::string> paths = run.outputPaths();
     requireOutputPaths(paths);
     if (arguments.has("source-map") && options.method == PatchMethod::Paper)
@@ -155,8 +148,9 @@ void patch(Run& run) {
 
 }  // namespace
 
-const Command kPatch{"patch", "patch EXEMPLAR -o OUT --size X,Y [options]",
-                     "Make a larger sheet of a geometry texture, patch by patch, on its points",
-                     "vdb_synth patch mail.ply --size 4x,4x -o sheet.ply -o sheet.vdb", patch};
+const Command kPatch{
+    "patch", "patch EXEMPLAR -o OUT --size X,Y | --onto MODEL [options]",
+    "Make a larger sheet of a geometry texture, patch by patch, on its points, or lay it over a model",
+    "vdb_synth patch mail.ply --size 4x,4x -o sheet.ply -o sheet.vdb", patch};
 
 }  // namespace vdbsynth::cli

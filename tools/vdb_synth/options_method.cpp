@@ -165,7 +165,16 @@ std::vector<Option> analogyTable() {
                   "vectors or scalars FILE.vdb[:GRID], or strokes (world): .csv rows x,y,z,dx,dy,dz, .json, "
                   ".ply points with normals")
             .otherwiseIs("curvature")
-            .takenBy({"analogy", "texture", "relief"})
+            .takenBy({"analogy", "texture", "relief", "patch"})
+            .butFor(
+                "patch",
+                [](Option& o) {
+                    o.says(
+                         "direction of the exemplar's first axis over MODEL, with --onto: axis:x, axis:-z, "
+                         "around:y, radial, curvature, a grid of vectors or scalars FILE.vdb[:GRID], or "
+                         "strokes (world): .csv rows x,y,z,dx,dy,dz, .json, .ply points with normals")
+                        .otherwiseIs("a smooth field");
+                })
             .butFor(
                 "relief",
                 [](Option& o) {

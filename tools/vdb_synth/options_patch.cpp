@@ -125,11 +125,35 @@ std::vector<Option> paperTable() {
     };
 }
 
+std::vector<Option> ontoTable() {
+    return {
+        option(Kind::Model, "onto", "MODEL")
+            .says("lay the exemplar over the surface of a model in place of a sheet")
+            .noting("a mesh or points become a level set of voxels half a field step wide")
+            .takenBy(kPatch),
+        real("scale", "S", 0.001, 1000)
+            .in(Group::Controls)
+            .says("size of the exemplar, with --onto")
+            .initially("1")
+            .takenBy(kPatch),
+        real("height-offset", "W")
+            .in(Group::Controls)
+            .measuredIn(Unit::World)
+            .says("how far outward of MODEL's surface the middle of the exemplar's height lies, with --onto")
+            .initially("0")
+            .takenBy(kPatch),
+        flag("with-model")
+            .in(Group::Output)
+            .says("unite level sets and meshes with MODEL, with --onto")
+            .takenBy(kPatch),
+    };
+}
+
 }  // namespace
 
 std::vector<Option> patchOptionTable() {
     std::vector<Option> table = sheetTable();
-    for (const Option& option : paperTable()) table.push_back(option);
+    for (const auto& more : {ontoTable(), paperTable()}) table.insert(table.end(), more.begin(), more.end());
     return table;
 }
 

@@ -9,6 +9,18 @@
 
 namespace vdbsynth::cli {
 
+PatchSourceOptions patchSourceOptions(const Run& run) {
+    PatchSourceOptions options;
+    options.model = run.modelOptions();
+    if (run.arguments.has("plane")) {
+        const std::string plane = run.arguments.text("plane");
+        options.plane = plane == "xy" ? PatchPlane::XY : plane == "yz" ? PatchPlane::YZ : PatchPlane::ZX;
+    }
+    if (run.arguments.has("margin")) options.margin = run.arguments.real("margin");
+    validate(options);
+    return options;
+}
+
 void writeSheet(Run& run, const PatchSource& source, const PatchSheet& sheet) {
     std::vector<std::string> models;
     for (const std::string& path : run.outputPaths()) {
@@ -22,10 +34,11 @@ void writeSheet(Run& run, const PatchSource& source, const PatchSheet& sheet) {
     }
     if (models.empty()) return;
     if (!source.attributes.empty())
-        message(run.context, MessageLevel::Note,
-                models.front() + ": has no place for " + source.attributes.front().name +
-                    (source.attributes.size() > 1 ? " and others" : "") +
-                    " of the exemplar; a .ply carries them, and convert SHEET.ply makes any other file of that");
+        message(
+            run.context, MessageLevel::Note,
+            models.front() + ": has no place for " + source.attributes.front().name +
+                (source.attributes.size() > 1 ? " and others" : "") +
+                " of the exemplar; a .ply carries them, and convert SHEET.ply makes any other file of that");
     const Arguments& arguments = run.arguments;
     const double voxelSize = arguments.has("voxel-size") ? arguments.real("voxel-size") : source.voxelSize;
     const LevelSet model = sheetLevelSet(source, sheet, voxelSize, run.modelOptions().halfWidth, run.context);

@@ -5,6 +5,12 @@
 
 namespace vdbsynth::cli {
 
+/// How an exemplar is read, from the options. @throw Error InvalidOption
+PatchSourceOptions patchSourceOptions(const Run& run);
+
+/// patch EXEMPLAR --onto MODEL. @throw Error InvalidOption (options of sheets), and as patchOnto
+void patchOntoModel(Run& run);
+
 /// Writes a sheet to every -o: .ply its points, all others the level set or what writeModel makes of it.
 /// @throw Error as sheetLevelSet, writeModel
 void writeSheet(Run& run, const PatchSource& source, const PatchSheet& sheet);

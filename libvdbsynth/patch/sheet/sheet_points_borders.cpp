@@ -1,6 +1,5 @@
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/patch/sheet/sheet_points_steps.h"
-#include "libvdbsynth/points/point_cells.h"
 #include "libvdbsynth/points/point_set_surface.h"
 
 #include <algorithm>
@@ -10,29 +9,8 @@
 namespace vdbsynth {
 namespace {
 
-constexpr std::size_t kWanted = 192;  // centres of a warp, at most
-constexpr double kSameWay = 0.5;      // cosine between normals of both sides
-constexpr double kNearBorder = 1.2;   // [steps] from a border's node to a centre
-
-// Places kept apart from each other.
-class Spread {
-public:
-    explicit Spread(double apart) : mApart(apart), mCells(apart) {}
-
-    bool add(const Vec3d& place) {
-        if (mCells.anyNear(place,
-                           [&](std::uint32_t other) { return length(mPlaces[other] - place) < mApart; }))
-            return false;
-        mCells.add(place, std::uint32_t(mPlaces.size()));
-        mPlaces.push_back(place);
-        return true;
-    }
-
-private:
-    double mApart;
-    PointCells mCells;
-    std::vector<Vec3d> mPlaces;
-};
+constexpr double kSameWay = 0.5;     // cosine between normals of both sides
+constexpr double kNearBorder = 1.2;  // [steps] from a border's node to a centre
 
 class BorderReader {
 public:
@@ -44,7 +22,7 @@ public:
 
     BorderMoves read() {
         readNodes();
-        return thinned();
+        return spreadMoves(mFound, mArrangement.lattice.step);
     }
     std::vector<BorderPair> readPairs() {
         mSparse = true;
@@ -112,20 +90,6 @@ private:
         }
         mFound.centres.push_back(here->point);
         mFound.moves.push_back(move * 0.5);
-    }
-
-    BorderMoves thinned() const {
-        double apart = mArrangement.lattice.step;
-        for (;; apart *= 1.3) {
-            Spread spread(apart);
-            BorderMoves kept;
-            for (std::size_t c = 0; c < mFound.centres.size(); ++c)
-                if (spread.add(mFound.centres[c])) {
-                    kept.centres.push_back(mFound.centres[c]);
-                    kept.moves.push_back(mFound.moves[c]);
-                }
-            if (kept.centres.size() <= kWanted) return kept;
-        }
     }
 
     const SheetSource& mSource;

@@ -1,4 +1,5 @@
 #pragma once
+#include "libvdbsynth/patch/sheet/border_moves.h"
 #include "libvdbsynth/patch/sheet/compact_warp.h"
 #include "libvdbsynth/patch/sheet/sheet_points.h"
 
@@ -35,10 +36,7 @@ private:
     std::vector<std::uint32_t> mPoints;
 };
 
-/// A patch's side of its borders: places of the exemplar and how they must move to the middle.
-struct BorderMoves {
-    std::vector<Vec3d> centres, moves;  ///< plane space of the exemplar
-};
+/// A patch's side of its borders.
 BorderMoves borderMoves(const SheetSource& source, std::int32_t patch);
 
 /// A place at a border of a patch: its normal there, and from it to the other patch's surface.

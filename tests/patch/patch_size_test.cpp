@@ -80,3 +80,16 @@ TEST_CASE("patchFeature: same for any number of threads, and cancelled", "[patch
     CHECK(test::thrownWhenCancelled([&](const RunContext& ctx) { patchFeature(field, ctx); }).code ==
           int(ErrorCode::Cancelled));
 }
+
+TEST_CASE("patchSides: as given, or as the exemplar says, and what does not fit") {
+    const PatchField field = wave(48, 48, 12, 12);
+    const PatchSides given = patchSides(field, 20, 0.3), found = patchSides(field, 0, 0);
+    CHECK(given.patch == 20);
+    CHECK(given.overlap == 6);
+    CHECK(found.patch == patchSide(field, patchFeature(field)));
+    CHECK(found.overlap == (found.patch + 2) / 4);
+    CHECK(patchSides(field, 48, 0.05).overlap == 2);
+    CHECK(test::thrownBy([&] { patchSides(field, 49, 0); }).code == int(ErrorCode::Unusable));
+    CHECK(test::thrownBy([&] { patchSides(field, 3, 0); }).code == int(ErrorCode::InvalidOption));
+    CHECK(test::thrownBy([&] { patchSides(wave(5, 5, 0, 0), 0, 0); }).code == int(ErrorCode::Unusable));
+}

@@ -27,8 +27,16 @@ void requireLayout(const PatchField& exemplar, const OntoLayoutOptions& options)
         throw Error(ErrorCode::Unusable, "a patch is larger than the exemplar; a smaller `patch` fits");
 }
 
+// A way counts 1 + (radius * curvature)^2 times, so that what is bent sharply comes last: patches that come
+// from two sides across an edge do not fit, and what is flat should not suffer from it.
+float wayBetween(const SurfaceSites& sites, std::uint32_t a, std::uint32_t b, float radius) {
+    const float way = length(sites.point[b] - sites.point[a]),
+                bend = length(sites.normal[b] - sites.normal[a]);
+    return way > 0 ? way + radius * radius * bend * bend / way : 0;
+}
+
 // The sites outward from one of them, part by part of the surface.
-std::vector<std::uint32_t> outward(const SurfaceSites& sites, std::uint32_t seed) {
+std::vector<std::uint32_t> outward(const SurfaceSites& sites, std::uint32_t seed, float radius) {
     using Reached = std::pair<float, std::uint32_t>;
     std::vector<std::uint32_t> order;
     std::vector<char> done(sites.size(), 0);
@@ -46,7 +54,7 @@ std::vector<std::uint32_t> outward(const SurfaceSites& sites, std::uint32_t seed
             order.push_back(site);
             for (std::size_t n = sites.begin[site]; n < sites.begin[site + 1]; ++n) {
                 const std::uint32_t to = sites.neighbours[n];
-                const float there = distance + length(sites.point[to] - sites.point[site]);
+                const float there = distance + wayBetween(sites, site, to, radius);
                 if (there >= way[to]) continue;
                 way[to] = there;
                 open.push({there, to});
@@ -98,9 +106,10 @@ OntoArrangement layOntoSurface(const OntoSurface& surface, const PatchField& exe
     arrangement.label.assign(count * std::size_t(arrangement.nz), OntoArrangement::kNone);
     OntoLayer layer(surface, exemplar, options, arrangement, ctx);
     const std::uint32_t seed = Random(ctx.seed, 0, kSeed).below(std::uint32_t(count));
+    const float radius = float(0.5 * options.patch * exemplar.lattice.step);
     Stage stage(ctx, "laying patches", count);
     std::size_t passed = 0;
-    for (const std::uint32_t site : outward(surface.sites, seed)) {
+    for (const std::uint32_t site : outward(surface.sites, seed, radius)) {
         ++passed;
         if (arrangement.known(site)) continue;
         layer.lay(layer.centreFor(site), 0, 0);

@@ -11,8 +11,9 @@ struct OntoLayoutOptions {
     int repairs = 2;         ///< 0..20 rounds in which patches are laid over the worst seams
 };
 
-/// Covers a surface with round patches of an exemplar, outward from a site drawn by the seed: the next patch
-/// holds the uncovered site that is nearest to the first one and lies `overlap` within it, and covers as much
+/// Covers a surface with round patches of an exemplar, outward from a site drawn by the seed, flat parts
+/// before sharply bent ones: the next patch holds the uncovered site that is nearest to the first one, ways
+/// counted 1 + (radius * curvature)^2 times, and lies `overlap` within it, and covers as much
 /// of what is left as one of some places around can. Each is chosen as layPatches (layout/patch_layout.h)
 /// does: by the fields of what lies there, seen in its disk (patch_candidates.h), one of the best drawn by
 /// (seed, patch), no continuation of a patch there as long as another place fits well; then moved and turned

@@ -19,6 +19,7 @@ constexpr double kGood = 2;    // times the cost of a good match
 constexpr double kRim = 4;     // [steps] that disks are wider than patches
 constexpr int kRounds = 2;     // of moving and turning
 constexpr float kNear = 2;     // [steps] from a surface, of nodes that say how to
+constexpr double kKept = 3;    // how much more the field's direction counts than that of what lies around
 constexpr double kMost = 1.5;  // [steps] by which a patch is moved, or turned at its rim
 
 // The disk's member nearest to the middle of every cell of a square.
@@ -53,7 +54,10 @@ OntoLayer::OntoLayer(const OntoSurface& surface, const PatchField& exemplar, con
       mContext(ctx),
       mDisks(surface),
       mRadius(0.5 * options.patch * exemplar.lattice.step) {
-    mGood = kGood * nearMatchLevel(exemplar, options.patch, options.overlap, kProbes, options.overlap, ctx);
+    // Of pieces so small that others of the same phase are in the exemplar.
+    const int shorter = std::min(exemplar.lattice.nx, exemplar.lattice.ny),
+              side = std::min(options.patch, std::max(2 * options.overlap, shorter * 2 / 5));
+    mGood = kGood * nearMatchLevel(exemplar, side, options.overlap, kProbes, options.overlap, ctx);
 }
 
 Vec2f OntoLayer::columnOnDisk(int i, int j) const {
@@ -158,6 +162,10 @@ void OntoLayer::fit(const OntoOverlap& overlap, OntoPatch& patch) const {
                 right += slope * double(old[n] - now[n]);
             }
         }
+        // Turned only by a part of what its neighbours are: directions are the field's, and errors must not
+        // add up around a limb.
+        right[2] -= kKept * squares(2, 2) * turned;
+        squares(2, 2) *= 1 + kKept;
         const Eigen::Vector3d move = squares.ldlt().solve(right);
         // Rotations are products of small ones, by the half angle's tangent.
         const double turn = std::clamp(turned + move[2], -kMost, kMost) - turned, half = 0.5 * turn / radius;

@@ -50,7 +50,7 @@ TEST_CASE("parseArguments: what is refused", "[tools][error]") {
               parseArguments("make", {"--labels", "1"});
           }) ==
           "--labels: is no option of make; convert, crop, mask, match, synth, analogy, texture, repeat, "
-          "compare, render, relief and relief-extract take it");
+          "compare, render, patch, relief and relief-extract take it");
     CHECK(refusalOf([] { parseArguments("synth", {"--which=a.vdb"}); }) == "--which: is now --exemplar-map");
     CHECK(test::contains(refusalOf([] {
                              parseArguments("synth", {"--sise", "1"});

@@ -1,6 +1,7 @@
 #include "libvdbsynth/patch/onto/onto_layout.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/math/smallest_rotation.h"
 #include "libvdbsynth/patch/onto/onto_layout_steps.h"
 
 #include <algorithm>
@@ -27,39 +28,85 @@ void requireLayout(const PatchField& exemplar, const OntoLayoutOptions& options)
         throw Error(ErrorCode::Unusable, "a patch is larger than the exemplar; a smaller `patch` fits");
 }
 
-// A way counts 1 + (radius * curvature)^2 times, so that what is bent sharply comes last: patches that come
-// from two sides across an edge do not fit, and what is flat should not suffer from it.
-float wayBetween(const SurfaceSites& sites, std::uint32_t a, std::uint32_t b, float radius) {
-    const float way = length(sites.point[b] - sites.point[a]),
-                bend = length(sites.normal[b] - sites.normal[a]);
-    return way > 0 ? way + radius * radius * bend * bend / way : 0;
+using Reached = std::pair<float, std::uint32_t>;
+using Reachable = std::priority_queue<Reached, std::vector<Reached>, std::greater<>>;
+
+// How fast normals and the frames' directions turn between two sites, squared [1 / world^2].
+float turning(const OntoSurface& surface, std::uint32_t a, std::uint32_t b) {
+    const SurfaceSites& sites = surface.sites;
+    const float way = length(sites.point[b] - sites.point[a]);
+    if (!(way > 0)) return 0;
+    const Vec3f bend = sites.normal[b] - sites.normal[a],
+                turn = surface.tangent[b] - carried(surface.tangent[a], sites.normal[a], sites.normal[b]);
+    return (dot(bend, bend) + dot(turn, turn)) / (way * way);
 }
 
-// The sites outward from one of them, part by part of the surface.
-std::vector<std::uint32_t> outward(const SurfaceSites& sites, std::uint32_t seed, float radius) {
-    using Reached = std::pair<float, std::uint32_t>;
+// Visits the sites nearest first from what is reached already. @param cost  of the way between two
+template <typename Cost, typename Visit>
+void outward(const SurfaceSites& sites, Reachable& open, std::vector<float>& way, const Cost& cost,
+             const Visit& visit) {
+    while (!open.empty()) {
+        const auto [distance, site] = open.top();
+        open.pop();
+        if (distance > way[site]) continue;
+        visit(site);
+        for (std::size_t n = sites.begin[site]; n < sites.begin[site + 1]; ++n) {
+            const std::uint32_t to = sites.neighbours[n];
+            const float there = distance + cost(site, to);
+            if (there >= way[to]) continue;
+            way[to] = there;
+            open.push({there, to});
+        }
+    }
+}
+
+// A site drawn from those that are farthest from edges and places where directions turn fast: at least half
+// as far as the farthest.
+std::uint32_t calmSite(const OntoSurface& surface, float radius, std::uint64_t seed) {
+    const SurfaceSites& sites = surface.sites;
+    std::vector<float> way(sites.size(), std::numeric_limits<float>::max());
+    Reachable open;
+    for (std::uint32_t site = 0; site < sites.size(); ++site)
+        for (std::size_t n = sites.begin[site]; n < sites.begin[site + 1]; ++n)
+            if (turning(surface, site, sites.neighbours[n]) * radius * radius > 1 && way[site] > 0) {
+                way[site] = 0;
+                open.push({0.f, site});
+            }
+    outward(
+        sites, open, way,
+        [&](std::uint32_t a, std::uint32_t b) { return length(sites.point[b] - sites.point[a]); },
+        [](std::uint32_t) {});
+    const float farthest = *std::max_element(way.begin(), way.end());
+    std::vector<std::uint32_t> calm;
+    for (std::uint32_t site = 0; site < sites.size(); ++site)
+        if (way[site] >= 0.5f * farthest) calm.push_back(site);
+    return calm[Random(seed, 0, kSeed).below(std::uint32_t(calm.size()))];
+}
+
+// The sites outward from one of them, part by part of the surface. A way counts 1 + (radius * turning)^2
+// times, so that what is bent sharply comes last: patches that come from two sides across an edge do not fit,
+// and what is calm should not suffer from it.
+std::vector<std::uint32_t> layingOrder(const OntoSurface& surface, std::uint32_t seed, float radius) {
+    const SurfaceSites& sites = surface.sites;
     std::vector<std::uint32_t> order;
-    std::vector<char> done(sites.size(), 0);
     std::vector<float> way(sites.size(), std::numeric_limits<float>::infinity());
+    std::vector<char> done(sites.size(), 0);
     std::uint32_t next = 0;
     while (order.size() < sites.size()) {
-        std::priority_queue<Reached, std::vector<Reached>, std::greater<>> open;
+        Reachable open;
         way[seed] = 0;
         open.push({0.f, seed});
-        while (!open.empty()) {
-            const auto [distance, site] = open.top();
-            open.pop();
-            if (done[site]) continue;
-            done[site] = 1;
-            order.push_back(site);
-            for (std::size_t n = sites.begin[site]; n < sites.begin[site + 1]; ++n) {
-                const std::uint32_t to = sites.neighbours[n];
-                const float there = distance + wayBetween(sites, site, to, radius);
-                if (there >= way[to]) continue;
-                way[to] = there;
-                open.push({there, to});
-            }
-        }
+        outward(
+            sites, open, way,
+            [&](std::uint32_t a, std::uint32_t b) {
+                return length(sites.point[b] - sites.point[a]) *
+                       (1 + radius * radius * turning(surface, a, b));
+            },
+            [&](std::uint32_t site) {
+                if (done[site]) return;
+                done[site] = 1;
+                order.push_back(site);
+            });
         while (next < sites.size() && done[next]) ++next;
         seed = next;
     }
@@ -69,27 +116,28 @@ std::vector<std::uint32_t> outward(const SurfaceSites& sites, std::uint32_t seed
 }  // namespace
 
 std::uint32_t OntoLayer::centreFor(std::uint32_t uncovered) {
-    constexpr std::size_t kTried = 24;
+    constexpr std::size_t kTried = 48;
+    constexpr double kKnown = 0.35;
     const double inside = mRadius - mOptions.overlap * mExemplar.lattice.step;
     const SurfaceDisk around = mDisks.around(uncovered, mRadius + inside);
-    std::vector<std::size_t> tried, open;
-    for (std::size_t m = 0; m < around.size(); ++m) {
-        const double away = double(length(around.at[m]));
-        if (away <= inside && away >= 0.6 * inside) tried.push_back(m);
-        if (!mArrangement.known(around.site[m])) open.push_back(m);
-    }
-    const auto covered = [&](const Vec2f& middle) {
-        return std::count_if(open.begin(), open.end(),
-                             [&](std::size_t m) { return double(length(around.at[m] - middle)) <= mRadius; });
-    };
+    std::vector<std::size_t> tried;
+    for (std::size_t m = 0; m < around.size(); ++m)
+        if (double(length(around.at[m])) <= inside) tried.push_back(m);
     std::uint32_t best = uncovered;
-    auto most = covered({0, 0});
+    double most = -1;
     const std::size_t stride = std::max<std::size_t>(1, tried.size() / kTried);
-    for (std::size_t n = 0; n < tried.size(); n += stride)
-        if (const auto count = covered(around.at[tried[n]]); count > most) {
-            most = count;
-            best = around.site[tried[n]];
-        }
+    for (std::size_t n = 0; n < tried.size(); n += stride) {
+        std::size_t open = 0, known = 0;
+        for (std::size_t m = 0; m < around.size(); ++m)
+            if (double(length(around.at[m] - around.at[tried[n]])) <= mRadius)
+                ++(mArrangement.known(around.site[m]) ? known : open);
+        // Where too little is known to tell a good piece from a bad one, the more the better.
+        const double share = double(known) / double(known + open);
+        const double value = share >= kKnown ? 1 + double(open) : share;
+        if (value <= most) continue;
+        most = value;
+        best = around.site[tried[n]];
+    }
     return best;
 }
 
@@ -105,11 +153,10 @@ OntoArrangement layOntoSurface(const OntoSurface& surface, const PatchField& exe
                   "a larger `scale` needs less");
     arrangement.label.assign(count * std::size_t(arrangement.nz), OntoArrangement::kNone);
     OntoLayer layer(surface, exemplar, options, arrangement, ctx);
-    const std::uint32_t seed = Random(ctx.seed, 0, kSeed).below(std::uint32_t(count));
     const float radius = float(0.5 * options.patch * exemplar.lattice.step);
     Stage stage(ctx, "laying patches", count);
     std::size_t passed = 0;
-    for (const std::uint32_t site : outward(surface.sites, seed, radius)) {
+    for (const std::uint32_t site : layingOrder(surface, calmSite(surface, radius, ctx.seed), radius)) {
         ++passed;
         if (arrangement.known(site)) continue;
         layer.lay(layer.centreFor(site), 0, 0);

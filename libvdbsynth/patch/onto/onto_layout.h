@@ -11,15 +11,15 @@ struct OntoLayoutOptions {
     int repairs = 2;         ///< 0..20 rounds in which patches are laid over the worst seams
 };
 
-/// Covers a surface with round patches of an exemplar, outward from a site drawn by the seed, flat parts
-/// before sharply bent ones: the next patch holds the uncovered site that is nearest to the first one, ways
-/// counted 1 + (radius * curvature)^2 times, and lies `overlap` within it, and covers as much
-/// of what is left as one of some places around can. Each is chosen as layPatches (layout/patch_layout.h)
-/// does: by the fields of what lies there, seen in its disk (patch_candidates.h), one of the best drawn by
-/// (seed, patch), no continuation of a patch there as long as another place fits well; then moved and turned
-/// by up to a step so that both fields fit best, and cut in (onto_cut.h). Then patches are laid over the
-/// worst seams; one that makes no sum of seams smaller is taken back.
-/// @param step  [world] the exemplar's, about the distance of sites
+/// Covers a surface with round patches of an exemplar, outward from a site drawn by the seed among those
+/// farthest from edges and from places where directions turn fast; a way counts 1 + (radius * turning)^2
+/// times, so that calm parts come first. The next patch holds the first uncovered site, `overlap` within it;
+/// of 48 such places that with the most uncovered sites of those of which at least 0.35 of the disk is known.
+/// Each is chosen as layPatches (layout/patch_layout.h) does: by the fields of what lies there, seen in its
+/// disk (patch_candidates.h), one of the best drawn by (seed, patch), no continuation of a patch there as
+/// long as another place fits well; then moved and turned by up to 1.5 steps so that both fields fit best,
+/// turned by a quarter of what fits best, so that turns do not add up around a limb; and cut in (onto_cut.h).
+/// Then patches are laid over the worst seams; one that makes no sum of seams smaller is taken back.
 /// @throw Error InvalidOption (a field out of its range), Unusable (a patch larger than the exemplar),
 /// Memory, Cancelled
 /// @par Cost    patches x (places of the exemplar x overlap) at most   @par Repeats same bits for any number

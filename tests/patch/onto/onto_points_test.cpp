@@ -98,14 +98,19 @@ TEST_CASE("ontoPoints: a flat exemplar over a ball is a larger ball, even and wi
 }
 
 TEST_CASE("ontoPoints: what would be inside out is left out and counted") {
-    // 40 below the surface of a ball of radius 35, everything is beyond its middle.
-    const OntoPointsResult result = flatOnBall().points({}, 42);
+    const test::PointShape tube = test::tubeShape(30, 60, 2);
+    const Made made(test::eggCrateExemplar({16, 0}, 48), test::surfaceAlong(tube, {0, 0, 1}, 2));
+    // The exemplar's points are in plane space at height 2: 40 below the surface of a tube of radius 30.
+    const OntoPointsResult result = made.points({}, 42);
     CHECK(result.sheet.size() == 0);
-    CHECK(result.bend.folded == Approx(1).margin(0.01));
-    CHECK(result.bend.most == Approx(40.0 / 35).epsilon(0.05));
-    CHECK(result.bend.dropped > 10000);
+    CHECK(result.bend.folded == Approx(1).margin(0.02));
+    CHECK(result.bend.most == Approx(40.0 / 30).epsilon(0.05));
+    CHECK(result.bend.dropped > 5000);
     // Half way down it is half as wide.
-    CHECK(flatOnBall().points({}, 19.5).bend.most == Approx(0.5).epsilon(0.05));
+    const OntoPointsResult half = made.points({}, 17);
+    CHECK(half.bend.most == Approx(0.5).epsilon(0.05));
+    CHECK(half.bend.dropped == 0);
+    CHECK(half.bend.folded == 0);
 }
 
 TEST_CASE("ontoPoints: errors, threads and cancelling") {

@@ -6,6 +6,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <cstdlib>
+
 using namespace vdbsynth;
 
 namespace {
@@ -87,7 +89,7 @@ TEST_CASE("patchSides: as given, or as the exemplar says, and what does not fit"
     CHECK(given.patch == 20);
     CHECK(given.overlap == 6);
     CHECK(found.patch == patchSide(field, patchFeature(field)));
-    CHECK(found.overlap == (found.patch + 2) / 4);
+    CHECK(std::abs(3 * found.overlap - found.patch) <= 1);
     CHECK(patchSides(field, 48, 0.05).overlap == 2);
     CHECK(test::thrownBy([&] { patchSides(field, 49, 0); }).code == int(ErrorCode::Unusable));
     CHECK(test::thrownBy([&] { patchSides(field, 3, 0); }).code == int(ErrorCode::InvalidOption));

@@ -190,7 +190,7 @@ TEST_CASE("synthesizePatches: the border goes on beyond the size, and is as good
     CHECK(fitOf(crate, made.sheet, crate.height + 2).worst < 0.15);
     CHECK(made.step == 2);
     CHECK(made.patch == 24);
-    CHECK(made.overlap == 6);
+    CHECK(made.overlap == 8);
 }
 
 TEST_CASE("synthesizePatches: rings stay whole rings, on sheets that face each other") {

@@ -1,6 +1,6 @@
 #pragma once
 #include "libvdbsynth/points/even_sampling.h"
-#include "libvdbsynth/points/point_set_surface_steps.h"
+#include "libvdbsynth/points/point_blocks_steps.h"
 
 #include <cstdint>
 #include <vector>

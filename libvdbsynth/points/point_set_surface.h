@@ -71,7 +71,8 @@ public:
 
     /// The first place where the ray meets the surface, from either side: at origin + t * direction / its
     /// length, 0 <= t <= reach. Sheets that the ray enters and leaves within a quarter of a spacing may be
-    /// missed.
+    /// missed. Space without points is crossed by steps of half the smallest kernel's reach, but at most
+    /// 2000.
     /// @param direction  of any length but zero   @param reach  [world]
     /// @par Cost    about 6 microseconds for a hit
     std::optional<SurfaceFoot> intersect(const Vec3d& origin, const Vec3d& direction, double reach) const;

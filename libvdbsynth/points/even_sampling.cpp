@@ -151,7 +151,6 @@ EvenSampling evenSampling(const PointSetSurface& surface, const std::vector<Vec3
     requireSameLength(points.size(), normals.size(), "normal");
     if (!fixed.empty()) requireSameLength(points.size(), fixed.size(), "mark");
     throwIfCancelled(ctx);
-    Evening evening(surface, options, ctx);
     if (points.empty() || !(surface.spacing() > 0)) {
         // There is no surface to move on.
         EvenSampling same;
@@ -160,7 +159,7 @@ EvenSampling evenSampling(const PointSetSurface& surface, const std::vector<Vec3
         for (std::size_t i = 0; i < points.size(); ++i) same.source.push_back(std::uint32_t(i));
         return same;
     }
-    return evening.run(points, normals, fixed);
+    return Evening(surface, options, ctx).run(points, normals, fixed);
 }
 
 }  // namespace vdbsynth

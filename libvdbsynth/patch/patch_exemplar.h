@@ -17,8 +17,8 @@ Vec3d toPlane(PatchPlane plane, const Vec3d& world);
 /// The inverse of toPlane.
 Vec3d fromPlane(PatchPlane plane, const Vec3d& place);
 
-/// A geometry texture [duranleau2006, section 3]: oriented points that go on beyond a box. Plane space: x and
-/// y along the reference plane, z the height, the box's minimum corner at the origin.
+/// A geometry texture [duranleau2006, section 3]: oriented points that continue beyond a box. Plane space: x
+/// and y along the reference plane, z the height, the box's minimum corner at the origin.
 struct PatchExemplar {
     std::vector<Vec3f> points;   ///< [points] plane space [world]; in the box and in a margin around it
     std::vector<Vec3f> normals;  ///< [points] of length 1

@@ -15,8 +15,8 @@ enum class PatchMethod { Default, Paper };
 struct PatchOptions {
     PatchMethod method = PatchMethod::Default;
     double width = 0, depth = 0;  ///< [world] of the sheet along the plane's first and second axis
-    /// [world] at least 0: how far the points go on beyond that on all sides. Its outermost 7 spacings know
-    /// less of the surface around them.
+    /// [world] at least 0: how far the points continue beyond that on all sides. Its outermost 7 spacings
+    /// know less of the surface around them.
     double border = 0;
     double patch = 0;        ///< [world] side of a patch; 0: one and a half features (patch_size.h)
     double overlap = 0;      ///< 0.05..0.8 of a patch over earlier ones; 0: a third

@@ -29,14 +29,17 @@ public:
         : mSurface(surface),
           mOptions(options),
           mContext(ctx),
-          mSpacing(options.spacing > 0 ? options.spacing : surface.spacing()) {}
+          mScale(std::ldexp(1.0, -std::ilogb(options.spacing > 0 ? options.spacing : surface.spacing()))),
+          mSpacing((options.spacing > 0 ? options.spacing : surface.spacing()) * mScale) {}
 
     EvenSampling run(const std::vector<Vec3f>& points, const std::vector<Vec3f>& normals,
                      const std::vector<char>& fixed) {
-        mResult.source = withoutNear(points, normals, fixed, mOptions.tooNear * mSpacing, mContext);
+        std::vector<Vec3f> scaled;
+        for (const Vec3f& p : points) scaled.push_back(cast<float>(cast<double>(p) * mScale));
+        mResult.source = withoutNear(scaled, normals, fixed, mOptions.tooNear * mSpacing, mContext);
         mResult.dropped = points.size() - mResult.source.size();
         for (std::uint32_t i : mResult.source) {
-            mResult.points.push_back(points[i]);
+            mResult.points.push_back(scaled[i]);
             mResult.normals.push_back(normals[i]);
             mFixed.push_back(fixed.empty() ? 0 : fixed[i]);
         }
@@ -45,6 +48,9 @@ public:
         fill();
         for (int round = 1; round <= mOptions.rounds; ++round)
             moveApart(round == mOptions.rounds || round % kSettling == 0);
+        for (std::size_t i = 0; i < mFixed.size(); ++i)
+            mResult.points[i] = mFixed[i] ? points[mResult.source[i]]
+                                          : cast<float>(cast<double>(mResult.points[i]) * (1 / mScale));
         return std::move(mResult);
     }
 
@@ -58,7 +64,7 @@ private:
     }
 
     void settle(std::size_t i, const Vec3d& place) {
-        const auto foot = mSurface.project(place, cast<double>(mResult.normals[i]));
+        const auto foot = projectScaled(mSurface, place, cast<double>(mResult.normals[i]), mScale);
         if (!foot || length(foot->point - place) > mSpacing) return;
         mResult.points[i] = cast<float>(foot->point);
         mResult.normals[i] = cast<float>(foot->normal);
@@ -72,7 +78,7 @@ private:
             const double reach = std::max(kReach, 2.5 * mOptions.tooWide) * mSpacing;
             const SampledPoints sampled(mResult.points, mResult.normals, reach);
             const std::vector<AddedPoint> added =
-                middlesOfHoles(mSurface, sampled, from, mOptions.tooWide * mSpacing, mContext);
+                middlesOfHoles(mSurface, mScale, sampled, from, mOptions.tooWide * mSpacing, mContext);
             // What is left of a hole is beside what was added to it.
             from.clear();
             for (const AddedPoint& point : added) {
@@ -119,7 +125,8 @@ private:
     const PointSetSurface& mSurface;
     EvenSamplingOptions mOptions;
     const RunContext& mContext;
-    double mSpacing;
+    double mScale;    // of lengths here over those of the world: a power of two
+    double mSpacing;  // 1 to 2
     EvenSampling mResult;
     std::vector<char> mFixed;
 };
@@ -144,7 +151,6 @@ EvenSampling evenSampling(const PointSetSurface& surface, const std::vector<Vec3
     requireSameLength(points.size(), normals.size(), "normal");
     if (!fixed.empty()) requireSameLength(points.size(), fixed.size(), "mark");
     throwIfCancelled(ctx);
-    Evening evening(surface, options, ctx);
     if (points.empty() || !(surface.spacing() > 0)) {
         // There is no surface to move on.
         EvenSampling same;
@@ -153,7 +159,7 @@ EvenSampling evenSampling(const PointSetSurface& surface, const std::vector<Vec3
         for (std::size_t i = 0; i < points.size(); ++i) same.source.push_back(std::uint32_t(i));
         return same;
     }
-    return evening.run(points, normals, fixed);
+    return Evening(surface, options, ctx).run(points, normals, fixed);
 }
 
 }  // namespace vdbsynth

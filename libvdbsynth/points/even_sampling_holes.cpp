@@ -30,8 +30,8 @@ using Found = std::vector<AddedPoint>;
 
 class HoleSearch {
 public:
-    HoleSearch(const PointSetSurface& surface, const SampledPoints& sampled, double radius)
-        : mSurface(surface), mSampled(sampled), mRadius(radius) {}
+    HoleSearch(const PointSetSurface& surface, double scale, const SampledPoints& sampled, double radius)
+        : mSurface(surface), mScale(scale), mSampled(sampled), mRadius(radius) {}
 
     // Circles through the point and two neighbours that hold none of the others.
     void from(std::size_t i, Found& found) const {
@@ -52,7 +52,8 @@ public:
             for (const Planar& q : around) {
                 Planar middle;
                 if (!circleMiddle(p, q, middle) || !isEmpty(around, middle)) continue;
-                const auto foot = mSurface.project(place + frame.u * middle.x + frame.v * middle.y, normal);
+                const auto foot =
+                    projectScaled(mSurface, place + frame.u * middle.x + frame.v * middle.y, normal, mScale);
                 if (foot && isHole(*foot)) found.push_back({*foot, std::uint32_t(i)});
             }
     }
@@ -92,16 +93,17 @@ private:
     }
 
     const PointSetSurface& mSurface;
+    double mScale;
     const SampledPoints& mSampled;
     double mRadius;
 };
 
 }  // namespace
 
-std::vector<AddedPoint> middlesOfHoles(const PointSetSurface& surface, const SampledPoints& sampled,
-                                       const std::vector<std::uint32_t>& from, double radius,
-                                       const RunContext& ctx) {
-    const HoleSearch search(surface, sampled, radius);
+std::vector<AddedPoint> middlesOfHoles(const PointSetSurface& surface, double scale,
+                                       const SampledPoints& sampled, const std::vector<std::uint32_t>& from,
+                                       double radius, const RunContext& ctx) {
+    const HoleSearch search(surface, scale, sampled, radius);
     std::vector<Found> found(from.size());
     parallelFor(ctx, from.size(), 256, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) search.from(from[k], found[k]);

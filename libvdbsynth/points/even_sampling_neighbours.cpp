@@ -95,6 +95,13 @@ bool isSurrounded(const std::vector<PlanarNeighbour>& neighbours) {
     return true;
 }
 
+std::optional<SurfaceFoot> projectScaled(const PointSetSurface& surface, const Vec3d& place,
+                                         const Vec3d& facing, double scale) {
+    std::optional<SurfaceFoot> foot = surface.project(place * (1 / scale), facing);
+    if (foot) foot->point = foot->point * scale;
+    return foot;
+}
+
 std::vector<std::uint32_t> withoutNear(const std::vector<Vec3f>& points, const std::vector<Vec3f>& normals,
                                        const std::vector<char>& fixed, double distance,
                                        const RunContext& ctx) {

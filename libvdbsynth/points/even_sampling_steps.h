@@ -1,17 +1,18 @@
 #pragma once
 #include "libvdbsynth/points/even_sampling.h"
-#include "libvdbsynth/points/point_set_surface_steps.h"
+#include "libvdbsynth/points/point_blocks_steps.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
-// Steps of even_sampling.h.
+// Steps of even_sampling.h. Lengths are those of the world times a scale, so that floats hold their squares.
 namespace vdbsynth {
 
 /// A neighbour as it is seen in the tangent plane of a place.
 struct PlanarNeighbour {
     std::uint32_t number = 0;
-    double distance = 0;  ///< [world] in space
+    double distance = 0;  ///< [scaled] in space
     double x = 0, y = 0;  ///< direction in the plane, length 1
     double turn = 0;      ///< grows with the angle of (x, y), 0..4
 };
@@ -19,7 +20,7 @@ struct PlanarNeighbour {
 /// Points that neighbours are looked for in.
 class SampledPoints {
 public:
-    /// @param points   [n] at least one   @param normals  [n]   @param reach  [world] of neighbours
+    /// @param points   [n] at least one   @param normals  [n]   @param reach  [scaled] of neighbours
     SampledPoints(std::vector<Vec3f> points, std::vector<Vec3f> normals, double reach);
 
     /// The points within `reach` of a place that are of its sheet, but `self`, by the angle of their
@@ -52,6 +53,10 @@ std::vector<std::uint32_t> withoutNear(const std::vector<Vec3f>& points, const s
                                        const std::vector<char>& fixed, double distance,
                                        const RunContext& ctx);
 
+/// As PointSetSurface::project, for lengths that are scaled.
+std::optional<SurfaceFoot> projectScaled(const PointSetSurface& surface, const Vec3d& place,
+                                         const Vec3d& facing, double scale);
+
 struct AddedPoint {
     SurfaceFoot foot;
     std::uint32_t nearest = 0;  ///< the point it was looked for from
@@ -59,8 +64,8 @@ struct AddedPoint {
 /// The middles of circles on the surface, of at least `radius`, that hold no point, but have one of those
 /// looked from on them and others around; none within `radius` of another.
 /// @param from  numbers of points
-std::vector<AddedPoint> middlesOfHoles(const PointSetSurface& surface, const SampledPoints& sampled,
-                                       const std::vector<std::uint32_t>& from, double radius,
-                                       const RunContext& ctx);
+std::vector<AddedPoint> middlesOfHoles(const PointSetSurface& surface, double scale,
+                                       const SampledPoints& sampled, const std::vector<std::uint32_t>& from,
+                                       double radius, const RunContext& ctx);
 
 }  // namespace vdbsynth

@@ -14,8 +14,7 @@ namespace vdbsynth {
 namespace {
 
 const double kReachOverSpread = std::sqrt(12.0);  // R / h, see point_set_surface.h
-constexpr float kOpposite = -0.5f;                // cosine beyond which a point is of another sheet
-constexpr float kSameSheet = 0.9f;  // cosine up to which what was gathered for a facing serves another
+constexpr float kSameSheet = 0.9f;  // cosine up to which what was gathered for a point serves another
 constexpr double kStay = 0.05;      // [reach] steps that need not gather again
 constexpr int kMostSteps = 24;
 constexpr int kSettling = 3;         // steps that may grow
@@ -132,10 +131,9 @@ bool SurfaceWalk::begin(const Vec3d& place) {
     if (found < 0) return false;
     mHeaviest = std::size_t(found);
     const StoredPoint& point = heaviest();
-    if (mGathered && mSheet.share(point) == 1 &&
-        (mGiven || dot(point.normal, mSheet.anchor.normal) > kSameSheet))
+    if (mGathered && mSheet.shares(point).sure && dot(point.normal, mSheet.anchor.normal) > kSameSheet)
         return true;
-    mSheet = {mGiven ? *mGiven : SheetFacing{point.normal, kOpposite}, point};
+    mSheet = {mGiven, point};
     mGathered = false;
     return true;
 }
@@ -154,10 +152,11 @@ std::optional<SurfaceFits> SurfaceWalk::at(const Vec3d& place) {
     if (!mGathered || !(dot(away, away) <= stay * stay)) {
         mCentre = cast<float>(place);
         mGathered = true;
-        mBlocks.gather(mCentre, mSheet, float(1.5 * mStay), packs);
+        mSure = mBlocks.gather(mCentre, mSheet, float(1.5 * mStay), packs);
     }
-    const float spread = heaviest().reach / float(kReachOverSpread);
-    return fitSurface(packs, cast<float>(place - cast<double>(mCentre)), spread, mOptions);
+    const Vec3f relative = cast<float>(place - cast<double>(mCentre));
+    if (!mSure) sharesOfSheet(packs, relative, heaviest().reach);
+    return fitSurface(packs, relative, heaviest().reach / float(kReachOverSpread), mOptions);
 }
 
 double SurfaceWalk::spacing() const {

@@ -36,10 +36,12 @@ struct SurfaceFoot {
 /// plane the same second moment, 2 h^2, as the Gaussian of standard deviation h = `kernel` * the point's own
 /// spacing: kernels follow the local density. Beyond R (6.9 spacings by default) there is no surface.
 ///
-/// Close sheets are kept apart. Of all points only those count that may be of one sheet with the point of
-/// largest weight at the query: normals within 120 degrees of its own (from 104 degrees on they count less),
-/// and the chord between the two, along the mean of their normals, at most 2 h (from 1.15 h on they count
-/// less): on a circle it is 0. Surfaces that end continue beyond their last points by some spacings.
+/// Close sheets are kept apart. The query chooses the point of largest weight; of the others only those count
+/// that may be of one sheet with it. Their normals are within 120 degrees of the mean normal (from 104
+/// degrees on they count less), and the chord from the mean point, along the mean of both normals, is at most
+/// 2 h (from 1.15 h on they count less): on a circle it is 0. These means are by kernels of half the reach,
+/// so that nothing jumps from point to point. Surfaces that end continue beyond their last points by some
+/// spacings.
 ///
 /// All members are const and may be called from many threads. Same bits always.
 class PointSetSurface {
@@ -69,7 +71,8 @@ public:
 
     /// The first place where the ray meets the surface, from either side: at origin + t * direction / its
     /// length, 0 <= t <= reach. Sheets that the ray enters and leaves within a quarter of a spacing may be
-    /// missed.
+    /// missed. Space without points is crossed by steps of half the smallest kernel's reach, but at most
+    /// 2000.
     /// @param direction  of any length but zero   @param reach  [world]
     /// @par Cost    about 6 microseconds for a hit
     std::optional<SurfaceFoot> intersect(const Vec3d& origin, const Vec3d& direction, double reach) const;

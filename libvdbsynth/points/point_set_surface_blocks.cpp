@@ -121,7 +121,7 @@ std::int64_t PointBlocks::heaviest(const Vec3f& p, const SheetFacing* facing) co
     return -1;
 }
 
-void PointBlocks::gather(const Vec3f& centre, const Sheet& sheet, float more,
+bool PointBlocks::gather(const Vec3f& centre, const Sheet& sheet, float more,
                          std::vector<PointPack>& packs) const {
     thread_local std::vector<std::uint32_t> numbers;
     std::size_t count = 0;
@@ -137,6 +137,7 @@ void PointBlocks::gather(const Vec3f& centre, const Sheet& sheet, float more,
         }
         count = std::size_t(next - numbers.data());
     });
+    bool sure = true;
     packs.resize((count + 7) / 8);
     if (count > 0) packs.back() = PointPack{};
     for (std::size_t k = 0; k < count; ++k) {
@@ -150,8 +151,12 @@ void PointBlocks::gather(const Vec3f& centre, const Sheet& sheet, float more,
         pack.normalY[lane] = stored.normal.y;
         pack.normalZ[lane] = stored.normal.z;
         pack.inverse[lane] = stored.inverse;
-        pack.share[lane] = sheet.share(stored);
+        const Sheet::Shares shares = sheet.shares(stored);
+        pack.rough[lane] = shares.rough;
+        pack.anchors[lane] = pack.share[lane] = shares.anchors;
+        sure = sure && shares.sure;
     }
+    return sure;
 }
 
 }  // namespace vdbsynth

@@ -11,7 +11,7 @@ constexpr double kShortest = 0.25;   // [spacings] of a step along the ray
 constexpr double kOnSurface = 1e-4;  // [spacings]
 constexpr double kJump = 0.02;       // [spacings] a value whose sign changes and is larger is no surface
 constexpr int kHalvings = 40;
-constexpr double kMostSteps = 1e5;  // through space without points
+constexpr double kMostSteps = 2000;  // through space without points
 
 // A ray in the blocks' units, and the value of the surface's function along it.
 class Ray {

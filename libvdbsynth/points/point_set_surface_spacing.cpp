@@ -14,7 +14,7 @@ constexpr std::size_t kAsked = 24;  // of a tree, to find them
 constexpr float kSide =
     0.908f;  // of the square that a point has to itself, over the root mean square distance:
              // right for points at random, 7 % too long on a square lattice, 2 % too short on a hexagonal one
-constexpr double kInCell = 1.5;      // points of a cell that make looking for neighbours quickest
+constexpr double kInCell = 4;        // points of a cell that make looking for neighbours quickest
 constexpr std::size_t kCrowd = 512;  // points looked at, from which on a tree is quicker
 
 // The nearest so far, nearest first; of equally near ones the first stay.
@@ -81,7 +81,7 @@ PointBlocks evenBlocks(const OrientedPoints& points, float& side, int tries) {
 
 Ring ringByBlocks(const PointBlocks& blocks, float reach, std::size_t i) {
     const StoredPoint& here = blocks[i];
-    for (const float radius : {1.2f * kCellOverReach, 2.4f * kCellOverReach}) {
+    for (const float radius : {0.8f * kCellOverReach, 1.6f * kCellOverReach}) {
         Ring ring(radius * reach * radius * reach);
         std::size_t looked = 0;
         blocks.forRuns(here.point, radius, [&](std::uint32_t begin, std::uint32_t end) {

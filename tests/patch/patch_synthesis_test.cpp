@@ -173,7 +173,7 @@ TEST_CASE("synthesizePatches: a tile of it too, and its opposite sides agree") {
     }
 }
 
-TEST_CASE("synthesizePatches: the border goes on beyond the size, and is as good") {
+TEST_CASE("synthesizePatches: the border continues beyond the size, and is as good") {
     const test::EggCrate crate{16, 1};
     PatchOptions options = sized(70, 40);
     options.border = 5;

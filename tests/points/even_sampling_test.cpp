@@ -166,6 +166,21 @@ TEST_CASE("evenSampling: fixed points keep their bits, and opposite sheets do no
     CHECK(double(ofAbove) == Approx(double(alone.points.size())).epsilon(0.03));
 }
 
+TEST_CASE("evenSampling: of any size it is the same") {
+    const test::PointShape sphere = randomSphere(600, 6);
+    const EvenSampling plain = evenSampling(surfaceOf(sphere), sphere.point, sphere.normal);
+    for (const int power : {-100, 100}) {
+        test::PointShape scaled = sphere;
+        for (Vec3f& p : scaled.point) p = p * std::ldexp(1.f, power);
+        const EvenSampling even = evenSampling(surfaceOf(scaled), scaled.point, scaled.normal);
+        REQUIRE(even.source == plain.source);
+        float farthest = 0;
+        for (std::size_t i = 0; i < even.points.size(); ++i)
+            farthest = std::max(farthest, length(even.points[i] * std::ldexp(1.f, -power) - plain.points[i]));
+        CHECK(farthest == 0);
+    }
+}
+
 TEST_CASE("evenSampling: without points or a surface nothing happens, and what is refused") {
     const test::PointShape plane = test::latticePlane(5);
     const PointSetSurface surface = surfaceOf(plane), none({{0, 0, 0}}, {{0, 0, 1}});

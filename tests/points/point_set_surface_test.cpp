@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/io/point_file.h"
 #include "tests/support/contexts.h"
 #include "tests/support/point_shapes.h"
 
@@ -246,4 +247,28 @@ TEST_CASE("PointSetSurface: same bits for any number of threads", "[points][tsan
         same = same && foot.x == feet[i].x && foot.y == feet[i].y && foot.z == feet[i].z;
     }
     CHECK(same);
+}
+
+TEST_CASE("PointSetSurface: a foot on a scan is its own foot", "[points][property]") {
+    const std::string path = test::sample("points/kitten.xyz");
+    if (path.empty()) return;
+    const PointCloud cloud = readPoints(path).cloud;
+    PointSetSurfaceOptions options;
+    options.sharp = false;  // robust planes are not exactly so
+    const PointSetSurface surface(cloud.points, cloud.normals, options);
+    std::size_t moved = 0;
+    double farthest = 0;
+    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+        Random random(4, i);
+        const Vec3d aside{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+        const auto foot = surface.project(cast<double>(cloud.points[i]) + aside * surface.spacing());
+        REQUIRE(foot);
+        const auto again = surface.project(foot->point);
+        REQUIRE(again);
+        moved += length(again->point - foot->point) > 1e-3 * surface.spacing();
+        const auto near = surface.project(cast<double>(cloud.points[i]));
+        farthest = std::max(farthest, length(near->point - cast<double>(cloud.points[i])));
+    }
+    CHECK(moved < cloud.points.size() / 100);
+    CHECK(farthest < 0.8 * surface.spacing());
 }

@@ -74,7 +74,7 @@ std::vector<Option> sheetTable() {
         real("margin", "W", 0)
             .in(Group::Input)
             .measuredIn(Unit::World)
-            .says("how much of the exemplar at its sides only says how it goes on")
+            .says("how much of the exemplar at its sides only says how it continues")
             .otherwiseIs("what the file says, else a third of a patch")
             .takenBy(kPatch),
     };

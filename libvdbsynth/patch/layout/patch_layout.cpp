@@ -43,7 +43,7 @@ PatchOverlap PatchLayer::overlapAt(const PatchPlace& at, int nx, int ny, int rim
     return overlap;
 }
 
-// Where patches that lie at the overlap would go on.
+// Where patches that lie at the overlap would continue.
 std::vector<PatchPlace> PatchLayer::continuations(const PatchPlace& at, const PatchOverlap& overlap) const {
     std::vector<std::int32_t> numbers;
     for (const auto& column : overlap.columns) {

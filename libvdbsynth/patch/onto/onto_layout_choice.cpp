@@ -93,7 +93,7 @@ OntoOverlap OntoLayer::overlapOf(const SurfaceDisk& disk, double middle) const {
     return overlap;
 }
 
-// Where patches that lie at the overlap would go on: the places at which this one would be the same.
+// Where patches that lie at the overlap would continue: the places at which this one would be the same.
 std::vector<PatchPlace> OntoLayer::continuations(const OntoOverlap& overlap, const SurfaceDisk& disk) const {
     std::vector<std::int32_t> seen;
     std::vector<PatchPlace> places;

@@ -53,8 +53,8 @@ struct ScanlineResult {
 /// 5. all points in the box of the patch and its margin are replaced.
 /// The sheet is made a margin larger on all sides, which is cut away, and its points are spread evenly.
 /// @param field  of the exemplar's points, on the paper's surface, PointSetKind::AdamsonAlexa
-/// @param size  [world] of the sheet along x and y, above 0; z: how far its points go on beyond that, which
-/// is at most the margin
+/// @param size  [world] of the sheet along x and y, above 0; z: how far its points continue beyond that,
+/// which is at most the margin
 /// @throw Error as validate; InvalidOption (size), Unusable (a patch larger than the exemplar), Memory,
 /// Cancelled
 /// @par Cost    patches x (places x overlap + pairs^3 + points)   @par Repeats same bits for any number of

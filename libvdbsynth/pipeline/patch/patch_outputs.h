@@ -13,7 +13,7 @@ namespace vdbsynth {
 struct PatchSheet {
     PatchResult result;
     double width = 0, depth = 0;  ///< [world] along the plane's axes
-    double border = 0;            ///< [world] how far result's points go on beyond that
+    double border = 0;            ///< [world] how far result's points continue beyond that
 };
 
 /// The points of the sheet itself, without its border, in the world: normals, what the exemplar carries, and

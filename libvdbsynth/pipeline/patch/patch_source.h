@@ -12,7 +12,7 @@ namespace vdbsynth {
 struct PatchSourceOptions {
     ModelOptions model;               ///< of exemplars that are meshes, grids or rasters
     std::optional<PatchPlane> plane;  ///< none: the file's own, else across the shortest side
-    /// [world] at least 0: how far the points go on beyond the box, where the file does not say the box;
+    /// [world] at least 0: how far the points continue beyond the box, where the file does not say the box;
     /// none:
     /// a third of a patch, of level sets what fields read beyond the box, 7 spacings.
     std::optional<double> margin;

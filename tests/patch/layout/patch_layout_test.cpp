@@ -87,7 +87,7 @@ TEST_CASE("layPatches: a sheet smaller than a patch is one, and a larger one is 
     requireWhole(field, sheet);
 }
 
-TEST_CASE("layPatches: of a texture that repeats every patch lies in phase, and none goes on another") {
+TEST_CASE("layPatches: of a texture that repeats every patch lies in phase, and none continues another") {
     const PatchField& field = crateField();
     for (const bool tile : {false, true}) {
         LayoutOptions options = optionsFor(12, 3);

@@ -188,7 +188,7 @@ TEST_CASE("PointSetSurface: a point far from the others changes nothing near the
     CHECK(std::abs(surfaceOf(plane).project({12.3, 14.2, 1})->point.z) < 1e-3);
 }
 
-TEST_CASE("PointSetSurface: one point, or many at one place, are no surface; repeats count once") {
+TEST_CASE("PointSetSurface: one point, or many at one place, are no surface, and repeats count once") {
     const PointSetSurface one({{1, 2, 3}}, {{0, 0, 1}});
     CHECK(one.spacing() == 0);
     CHECK_FALSE(one.project({1, 2, 3}));

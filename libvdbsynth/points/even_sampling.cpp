@@ -44,7 +44,7 @@ public:
             mFixed.push_back(fixed.empty() ? 0 : fixed[i]);
         }
         // Points that were put on the surface make better neighbours.
-        forFree([&](std::size_t i) { settle(i, cast<double>(mResult.points[i])); });
+        if (!mOptions.onSurface) forFree([&](std::size_t i) { settle(i, cast<double>(mResult.points[i])); });
         fill();
         for (int round = 1; round <= mOptions.rounds; ++round)
             moveApart(round == mOptions.rounds || round % kSettling == 0);

@@ -15,6 +15,7 @@ struct EvenSamplingOptions {
     /// [spacings] 0.8..5, or 0 for never: a circle this large on the surface without a point in it gets one
     /// in its middle. On a square lattice they are of 0.71 spacings.
     double tooWide = 0.9;
+    bool onSurface = false;  ///< points are feet of the surface: they are not projected before all else
 };
 
 /// @throw Error InvalidOption (a field out of its range)

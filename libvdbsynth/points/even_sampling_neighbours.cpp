@@ -109,13 +109,16 @@ std::vector<std::uint32_t> withoutNear(const std::vector<Vec3f>& points, const s
     std::iota(kept.begin(), kept.end(), 0u);
     if (!(distance > 0)) return kept;
     // The near pairs of each point that is not fixed, found by all threads; who stays is decided in order.
-    const PointBlocks blocks(oriented(points, normals), std::vector<float>(points.size(), float(distance)));
+    // In cells of two distances: smaller ones hold too few points to be worth their making.
+    constexpr float kReach = 4;
+    const PointBlocks blocks(oriented(points, normals),
+                             std::vector<float>(points.size(), kReach * float(distance)));
     std::vector<std::vector<std::uint32_t>> near(points.size());
     const auto isFixed = [&](std::size_t i) { return !fixed.empty() && fixed[i]; };
     parallelFor(ctx, points.size(), 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             if (isFixed(i)) continue;
-            blocks.forRuns(points[i], 1, [&](std::uint32_t first, std::uint32_t last) {
+            blocks.forRuns(points[i], 1 / kReach, [&](std::uint32_t first, std::uint32_t last) {
                 for (std::uint32_t k = first; k < last; ++k) {
                     const std::uint32_t j = blocks.number(k);
                     const Vec3d chord = cast<double>(points[j]) - cast<double>(points[i]);

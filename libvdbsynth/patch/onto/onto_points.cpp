@@ -5,7 +5,6 @@
 #include "libvdbsynth/patch/onto/chart_surface.h"
 #include "libvdbsynth/patch/onto/onto_points_steps.h"
 #include "libvdbsynth/patch/sheet/border_blend.h"
-#include "libvdbsynth/patch/sheet/compact_warp.h"
 #include "libvdbsynth/points/point_set_surface.h"
 
 #include <algorithm>
@@ -22,9 +21,7 @@ struct OntoPart {
     std::vector<std::size_t> node;  // [points]
     std::vector<float> bend;        // [sites that are the patch's at half height]
     std::size_t bare = 0, dropped = 0;
-    bool warped = false, shrunk = false;
-    double before = 0, after = 0;  // sums over centres [world]
-    std::size_t centres = 0;
+    BorderWarp border;
 };
 
 struct Heights {
@@ -53,8 +50,13 @@ public:
 
     OntoPart make() {
         const std::vector<std::uint32_t> own = ownPoints();
-        const CompactWarp warp = warpOf(own);
-        for (std::size_t p = 0; p < own.size(); ++p) place(own[p], mNode[p], warp);
+        const double radius = mSource.options.reach * mSource.arrangement.step;
+        std::vector<Vec3d> places;
+        for (const std::uint32_t point : own) places.push_back(cast<double>(mSource.exemplar.points[point]));
+        mPart.border =
+            warpAtBorders(radius > 0 ? ontoBorderMoves(mSource, mNumber) : BorderMoves{}, radius, places);
+        for (std::size_t p = 0; p < own.size(); ++p) place(own[p], mNode[p], mPart.border.places[p]);
+        mPart.border.places = {};
         measureBend();
         return std::move(mPart);
     }
@@ -90,27 +92,7 @@ private:
         return own;
     }
 
-    CompactWarp warpOf(const std::vector<std::uint32_t>& own) {
-        const double radius = mSource.options.reach * mSource.arrangement.step;
-        if (radius <= 0) return CompactWarp({}, {}, 1);
-        const BorderMoves borders = ontoBorderMoves(mSource, mNumber);
-        CompactWarp warp(borders.centres, borders.moves, radius);
-        if (warp.empty()) return warp;
-        std::vector<Vec3d> places;
-        for (const std::uint32_t point : own) places.push_back(cast<double>(mSource.exemplar.points[point]));
-        mPart.shrunk = warp.unfold(places) < 1;
-        mPart.warped = !warp.empty();
-        mPart.centres = borders.centres.size();
-        for (std::size_t c = 0; c < borders.centres.size(); ++c) {
-            const Vec3d moved = warp.at(borders.centres[c]).place - borders.centres[c];
-            mPart.before += 2 * length(borders.moves[c]);
-            mPart.after += 2 * length(borders.moves[c] - moved);
-        }
-        return warp;
-    }
-
-    void place(std::uint32_t point, std::size_t node, const CompactWarp& warp) {
-        const WarpedPlace warped = warp.at(cast<double>(mSource.exemplar.points[point]));
+    void place(std::uint32_t point, std::size_t node, const WarpedPlace& warped) {
         const auto base = baseAt(warped.place);
         if (!base) return;
         const double h = warped.place.z - mSource.zero;
@@ -187,11 +169,11 @@ OntoPointsResult joined(std::vector<OntoPart>& parts, double spacing, std::vecto
     for (OntoPart& part : parts) {
         append(result.sheet, part.points);
         node.insert(node.end(), part.node.begin(), part.node.end());
-        result.borders.warps += part.warped ? 1 : 0;
-        result.borders.shrunk += part.shrunk ? 1 : 0;
-        result.borders.apartBefore += part.before;
-        result.borders.apartAfter += part.after;
-        centres += part.centres;
+        result.borders.warps += part.border.warped ? 1 : 0;
+        result.borders.shrunk += part.border.shrunk ? 1 : 0;
+        result.borders.apartBefore += part.border.before;
+        result.borders.apartAfter += part.border.after;
+        centres += part.border.centres;
         part = {};
     }
     if (centres > 0) {

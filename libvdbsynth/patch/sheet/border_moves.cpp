@@ -1,8 +1,10 @@
 #include "libvdbsynth/patch/sheet/border_moves.h"
 
+#include "libvdbsynth/patch/sheet/compact_warp.h"
 #include "libvdbsynth/points/point_cells.h"
 
 #include <cstdint>
+#include <utility>
 
 namespace vdbsynth {
 namespace {
@@ -42,6 +44,25 @@ BorderMoves spreadMoves(const BorderMoves& found, double apart) {
             }
         if (kept.centres.size() <= kWanted) return kept;
     }
+}
+
+BorderWarp warpAtBorders(const BorderMoves& moves, double radius, const std::vector<Vec3d>& places) {
+    BorderWarp result;
+    CompactWarp warp(radius > 0 ? moves.centres : std::vector<Vec3d>{},
+                     radius > 0 ? moves.moves : std::vector<Vec3d>{}, radius > 0 ? radius : 1);
+    const bool any = !warp.empty();
+    CompactWarp::Unfolded unfolded = warp.unfold(places);
+    result.places = std::move(unfolded.places);
+    if (!any) return result;
+    result.shrunk = unfolded.factor < 1;
+    result.warped = !warp.empty();
+    result.centres = moves.centres.size();
+    for (std::size_t c = 0; c < moves.centres.size(); ++c) {
+        const Vec3d moved = warp.at(moves.centres[c]).place - moves.centres[c];
+        result.before += 2 * length(moves.moves[c]);
+        result.after += 2 * length(moves.moves[c] - moved);
+    }
+    return result;
 }
 
 }  // namespace vdbsynth

@@ -22,11 +22,20 @@ public:
     bool empty() const { return mCentres.empty(); }
     /// @par Cost    O(centres)
     WarpedPlace at(const Vec3d& place) const;
-    /// Halves the moves until det J is above `least` at all places. @return the factor
-    double unfold(const std::vector<Vec3d>& places, double least = 0.2);
+    /// Halves the moves until det J is above `least` at all places, and says where it then takes them.
+    /// @par Cost    of `at` for each place, however often the moves are halved
+    struct Unfolded {
+        double factor = 1;  ///< of the moves; 0 where eight halvings were not enough: the warp is empty then
+        std::vector<WarpedPlace> places;
+    };
+    Unfolded unfold(const std::vector<Vec3d>& places, double least = 0.2);
 
 private:
+    template <typename Visit>
+    void forNear(const Vec3f& place, Visit&& visit) const;
+
     std::vector<Vec3d> mCentres, mWeights;
+    std::vector<float> mX, mY, mZ;  // of the centres: what is near is found eight at once
     double mRadius;
 };
 

@@ -20,9 +20,7 @@ void requireOptions(const SheetOptions& options) {
 // One patch's part of the sheet.
 struct PatchPart {
     SheetPoints points;
-    bool warped = false, shrunk = false;
-    double before = 0, after = 0;  // sums over centres [world]
-    std::size_t centres = 0;
+    BorderWarp border;
 };
 
 double periodOf(int count, double step) {
@@ -40,21 +38,23 @@ public:
 
     PatchPart make(std::int32_t number) const {
         PatchPart part;
-        std::vector<std::uint32_t> own = ownPoints(number);
-        CompactWarp warp = warpOf(number, own, part);
+        const std::vector<std::uint32_t> own = ownPoints(number);
+        const double radius = mSource.options.reach * mSource.arrangement.lattice.step;
+        std::vector<Vec3d> places;
+        for (const std::uint32_t point : own) places.push_back(cast<double>(mSource.exemplar.points[point]));
+        part.border =
+            warpAtBorders(radius > 0 ? borderMoves(mSource, number) : BorderMoves{}, radius, places);
         const Vec3d shift = shiftOf(mSource.arrangement, number);
-        for (const std::uint32_t point : own) {
-            WarpedPlace warped{cast<double>(mSource.exemplar.points[point]), {}};
-            Vec3d normal = cast<double>(mSource.exemplar.normals[point]);
-            if (!warp.empty()) {
-                warped = warp.at(warped.place);
-                normal = warpedNormal(warped.jacobian, normal);
-            }
+        for (std::size_t p = 0; p < own.size(); ++p) {
+            const WarpedPlace& warped = part.border.places[p];
+            Vec3d normal = cast<double>(mSource.exemplar.normals[own[p]]);
+            if (part.border.warped) normal = warpedNormal(warped.jacobian, normal);
             part.points.points.push_back(cast<float>(onSheet(warped.place + shift)));
             part.points.normals.push_back(cast<float>(normal));
-            part.points.source.push_back(point);
+            part.points.source.push_back(own[p]);
             part.points.patch.push_back(number);
         }
+        part.border.places = {};
         return part;
     }
 
@@ -98,25 +98,6 @@ private:
         return a.label[std::size_t(column) * std::size_t(a.lattice.nz) + std::size_t(k)] == number;
     }
 
-    CompactWarp warpOf(std::int32_t number, const std::vector<std::uint32_t>& own, PatchPart& part) const {
-        const double radius = mSource.options.reach * mSource.arrangement.lattice.step;
-        if (radius <= 0) return CompactWarp({}, {}, 1);
-        BorderMoves borders = borderMoves(mSource, number);
-        CompactWarp warp(borders.centres, borders.moves, radius);
-        if (warp.empty()) return warp;
-        std::vector<Vec3d> places;
-        for (const std::uint32_t point : own) places.push_back(cast<double>(mSource.exemplar.points[point]));
-        part.shrunk = warp.unfold(places) < 1;
-        part.warped = !warp.empty();
-        part.centres = borders.centres.size();
-        for (std::size_t c = 0; c < borders.centres.size(); ++c) {
-            const Vec3d moved = warp.at(borders.centres[c]).place - borders.centres[c];
-            part.before += 2 * length(borders.moves[c]);
-            part.after += 2 * length(borders.moves[c] - moved);
-        }
-        return warp;
-    }
-
     const SheetSource& mSource;
     const PointColumns& mColumns;
 };
@@ -131,14 +112,19 @@ void append(SheetPoints& all, SheetPoints& part) {
 
 SheetResult joined(std::vector<PatchPart>& parts, double spacing) {
     SheetResult result;
-    std::size_t centres = 0;
+    std::size_t centres = 0, points = 0;
+    for (const PatchPart& part : parts) points += part.points.size();
+    result.sheet.points.reserve(points);
+    result.sheet.normals.reserve(points);
+    result.sheet.source.reserve(points);
+    result.sheet.patch.reserve(points);
     for (PatchPart& part : parts) {
         append(result.sheet, part.points);
-        result.borders.warps += part.warped ? 1 : 0;
-        result.borders.shrunk += part.shrunk ? 1 : 0;
-        result.borders.apartBefore += part.before;
-        result.borders.apartAfter += part.after;
-        centres += part.centres;
+        result.borders.warps += part.border.warped ? 1 : 0;
+        result.borders.shrunk += part.border.shrunk ? 1 : 0;
+        result.borders.apartBefore += part.border.before;
+        result.borders.apartAfter += part.border.after;
+        centres += part.border.centres;
     }
     if (centres > 0) {
         result.borders.apartBefore /= double(centres) * spacing;

@@ -11,12 +11,14 @@
 namespace vdbsynth {
 namespace {
 
-constexpr int kBlendRings = 2;  // of nodes beside a border whose points move
+constexpr int kBlendRings = 1;  // of nodes beside a border whose points move
 
-// Rings of nodes whose points the surface at the moved ones depends on: 6.9 spacings, and one more.
-int supportRings(const SheetSource& source) {
-    const double reach = 7 * source.exemplar.spacing / source.arrangement.lattice.step;
-    return kBlendRings + int(std::ceil(reach)) + 1;
+constexpr double kSupport = 8;    // [spacings] what the surface depends on, and a projection's way
+constexpr double kSpreading = 3;  // [spacings] what points are spread among: the reach of their forces, ditto
+
+// The last ring of nodes that has points within some spacings of those that move.
+int ringsAround(const SheetSource& source, double spacings) {
+    return kBlendRings + int(spacings * source.exemplar.spacing / source.arrangement.lattice.step);
 }
 
 std::size_t nodeOf(const PatchArrangement& a, const Vec3f& point) {
@@ -47,6 +49,7 @@ public:
         PointSetSurfaceOptions options;
         options.kernel = mSource.exemplar.kernel;
         const PointSetSurface surface(mPoints, mNormals, options, mContext);
+        dropFar();
         Stage stage(mContext, "blending borders", 2);
         project(surface);
         stage.advance();
@@ -56,7 +59,7 @@ public:
 
 private:
     void collect() {
-        const int support = supportRings(mSource);
+        const int support = ringsAround(mSource, kSupport);
         const auto distance = borderDistance(mArrangement, support + 1, mContext);
         for (std::size_t p = 0; p < mSheet.size(); ++p) {
             const int ring = distance[nodeOf(mArrangement, mSheet.points[p])];
@@ -70,8 +73,28 @@ private:
         mPoints.push_back(place);
         mNormals.push_back(mSheet.normals[p]);
         mNumber.push_back(std::uint32_t(p));
+        mRing.push_back(std::uint8_t(ring));
         mMoves.push_back(ring < kBlendRings ? 1 : 0);
         mCopy.push_back(copy ? 1 : 0);
+    }
+
+    // What only the surface needs takes no part in the rest.
+    void dropFar() {
+        const int most = ringsAround(mSource, kSpreading);
+        std::size_t kept = 0;
+        for (std::size_t n = 0; n < mPoints.size(); ++n) {
+            if (mRing[n] > most) continue;
+            mPoints[kept] = mPoints[n];
+            mNormals[kept] = mNormals[n];
+            mNumber[kept] = mNumber[n];
+            mMoves[kept] = mMoves[n];
+            mCopy[kept++] = mCopy[n];
+        }
+        mPoints.resize(kept);
+        mNormals.resize(kept);
+        mNumber.resize(kept);
+        mMoves.resize(kept);
+        mCopy.resize(kept);
     }
 
     // What a tile's point is across its ends: both see the same around them, and move as one. Copies come
@@ -115,6 +138,7 @@ private:
         EvenSamplingOptions options;
         options.spacing = mSource.exemplar.spacing;
         options.rounds = 3;
+        options.onSurface = true;
         return evenSampling(surface, mPoints, mNormals, fixed, options, mContext);
     }
 
@@ -186,7 +210,7 @@ private:
     // Near borders; of a tile with copies across its ends.
     std::vector<Vec3f> mPoints, mNormals;
     std::vector<std::uint32_t> mNumber;  // of the sheet's points
-    std::vector<std::uint8_t> mMoves, mCopy;
+    std::vector<std::uint8_t> mRing, mMoves, mCopy;
 };
 
 }  // namespace

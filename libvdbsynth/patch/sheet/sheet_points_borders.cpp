@@ -48,7 +48,7 @@ private:
                                          labelsAt(i, j + 1)};
         const int nz = mArrangement.lattice.nz;
         for (int k = 0; k < nz; ++k) {
-            if (here[k] != mNumber || (mSparse && (i + j + k) % 2 != 0)) continue;
+            if (here[k] != mNumber || (i + j + k) % 2 != 0) continue;
             std::int32_t seen[6];
             int count = 0;
             const auto note = [&](std::int32_t other) {

@@ -1,6 +1,5 @@
 #pragma once
 #include "libvdbsynth/patch/sheet/border_moves.h"
-#include "libvdbsynth/patch/sheet/compact_warp.h"
 #include "libvdbsynth/patch/sheet/sheet_points.h"
 
 #include <cstdint>

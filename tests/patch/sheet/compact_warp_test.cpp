@@ -69,7 +69,7 @@ TEST_CASE("CompactWarp: without centres, or moves, nothing moves") {
     CompactWarp none({}, {}, 1);
     CHECK(none.empty());
     CHECK(isIdentity(none.at({1, 2, 3}), {1, 2, 3}));
-    CHECK(none.unfold({{1, 2, 3}}) == 1);
+    CHECK(none.unfold({{1, 2, 3}}).factor == 1);
     const Moves made = randomMoves(20, 20, 0, 1);
     const CompactWarp still(made.centres, made.moves, 6);
     for (const Vec3d& place : manyPlaces(50)) CHECK(isIdentity(still.at(place), place));
@@ -113,12 +113,16 @@ TEST_CASE("CompactWarp: unfolded, det J is above the least everywhere asked") {
         CAPTURE(size);
         CompactWarp warp = randomWarp(size, 4);
         const CompactWarp before = warp;
-        const double factor = warp.unfold(places);
+        const CompactWarp::Unfolded unfolded = warp.unfold(places);
+        const double factor = unfolded.factor;
         CHECK((size > 0.1 || factor == 1));
         CHECK((size < 5 || factor < 1));
         double least = std::numeric_limits<double>::infinity();
-        for (const Vec3d& place : places) {
-            const WarpedPlace warped = warp.at(place);
+        for (std::size_t p = 0; p < places.size(); ++p) {
+            const Vec3d& place = places[p];
+            const WarpedPlace warped = warp.at(place), &said = unfolded.places[p];
+            REQUIRE(length(warped.place - said.place) < 1e-9);
+            REQUIRE(std::abs(determinant(warped.jacobian) - determinant(said.jacobian)) < 1e-9);
             least = std::min(least, determinant(warped.jacobian));
             // Shrunk, not changed.
             REQUIRE(length(warped.place - place - (before.at(place).place - place) * factor) < 1e-9);
@@ -129,7 +133,10 @@ TEST_CASE("CompactWarp: unfolded, det J is above the least everywhere asked") {
 
 TEST_CASE("CompactWarp: one that folds however small is given up") {
     CompactWarp warp = randomWarp(1e6, 5);
-    CHECK(warp.unfold(manyPlaces(200)) == 0);
+    const std::vector<Vec3d> places = manyPlaces(200);
+    const CompactWarp::Unfolded unfolded = warp.unfold(places);
+    CHECK(unfolded.factor == 0);
+    for (std::size_t p = 0; p < places.size(); ++p) REQUIRE(isIdentity(unfolded.places[p], places[p]));
     CHECK(warp.empty());
     CHECK(isIdentity(warp.at({1, 2, 3}), {1, 2, 3}));
 }

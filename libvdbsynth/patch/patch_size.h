@@ -18,7 +18,8 @@ struct PatchFeature {
 PatchFeature patchFeature(const PatchField& exemplar, const RunContext& ctx = {});
 
 /// The patch's side [columns] for an exemplar: one and a half features, at least 6 columns, at most two
-/// thirds of the exemplar's shorter side, so that there are places to choose from.
+/// thirds of the exemplar's shorter side, so that there are places to choose from. Without a period at least
+/// a quarter of that side: noise on a scan lets correlations fall sooner than what one sees is wide.
 int patchSide(const PatchField& exemplar, const PatchFeature& feature);
 
 /// [columns] of a patch, and of it what reaches over others.

@@ -72,6 +72,9 @@ TEST_CASE("patchSide: by hand") {
     CHECK(side(60, 48, 30) == 32);
     CHECK(side(6, 6, 3) == 4);
     CHECK(side(1, 9, 1) == 1);
+    // Without a period a quarter of the shorter side.
+    CHECK(patchSide(wave(48, 60, 0, 0), {2, false}) == 12);
+    CHECK(patchSide(wave(48, 60, 0, 0), {10, false}) == 15);
 }
 
 TEST_CASE("patchFeature: same for any number of threads, and cancelled", "[patch][tsan]") {

@@ -65,20 +65,6 @@ void reorder(const Raster& stored, const std::array<std::size_t, 3>& order, cons
 
 }  // namespace
 
-std::array<Vec3d, 3> nearestFrame(const std::array<Vec3d, 3>& axes) {
-    // Newton's iteration for the orthogonal factor: the mean of a matrix and its inverse transposed.
-    constexpr int kMostSteps = 100;
-    Axes frame = axes;
-    for (int step = 0; step < kMostSteps; ++step) {
-        const double scale = 0.5 / volumeOf(frame);
-        const Axes before = frame;
-        for (std::size_t i = 0; i < 3; ++i)
-            frame[i] = before[i] * 0.5 + cross(before[(i + 1) % 3], before[(i + 2) % 3]) * scale;
-        if (largestDifference(frame, before) < 1e-15) break;
-    }
-    return frame;
-}
-
 bool runAlongWorld(const std::array<Vec3d, 3>& axes) {
     return !(largestDifference(axes, kWorldAxes) > 0);
 }

@@ -1,16 +1,13 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/math/affine.h"
+#include "libvdbsynth/math/nearest_frame.h"
 #include "libvdbsynth/raster/raster.h"
 
 #include <array>
 #include <string>
 
 namespace vdbsynth {
-
-/// The unit directions at right angles to each other that are nearest to three given ones (polar
-/// decomposition); a reflection stays one. @param axes  unit vectors, not in one plane
-std::array<Vec3d, 3> nearestFrame(const std::array<Vec3d, 3>& axes);
 
 /// True for kWorldAxes, to the bit.
 bool runAlongWorld(const std::array<Vec3d, 3>& axes);

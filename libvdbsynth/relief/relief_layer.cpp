@@ -77,31 +77,6 @@ void walk(const Line& line, float direction, std::vector<Crossing>& found) {
     }
 }
 
-// What a cubic polynomial (Catmull-Rom) says of a field at a point. Trilinear values cut crests: a wave of
-// length w loses (pi / w)^2 / 2 of its amplitude between samples.
-float sampleCubic(const BrickField& field, const Vec3f& p) {
-    Index3 first;
-    float weight[3][4];
-    for (int axis = 0; axis < 3; ++axis) {
-        const float low = std::floor(p[axis]), t = p[axis] - low;
-        first[axis] = int(low) - 1;
-        weight[axis][0] = ((2 - t) * t - 1) * t / 2;
-        weight[axis][1] = ((3 * t - 5) * t * t + 2) / 2;
-        weight[axis][2] = ((4 - 3 * t) * t + 1) * t / 2;
-        weight[axis][3] = (t - 1) * t * t / 2;
-    }
-    float values[64], sum = 0;
-    field.readBox(first, {4, 4, 4}, values);
-    const float* v = values;
-    for (const float x : weight[0])
-        for (const float y : weight[1]) {
-            sum += x * y *
-                   (weight[2][0] * v[0] + weight[2][1] * v[1] + weight[2][2] * v[2] + weight[2][3] * v[3]);
-            v += 4;
-        }
-    return sum;
-}
-
 // What the height misses as both surfaces were met between samples by trilinear values.
 float missedHeight(const BaseSurface& base, const Vec3f& foot, const Vec3f& met, float slope) {
     const float missed = sampleCubic(base.distance, foot) - sampleCubic(base.scan, met) / slope;

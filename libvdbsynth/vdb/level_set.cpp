@@ -107,6 +107,13 @@ void requireHalfWidth(double halfWidth, const std::string& field) {
                   "from 1.5 to 100 voxels");
 }
 
+LevelSet withOwnGrids(const LevelSet& model) {
+    LevelSet copy = model;
+    if (copy.grid) copy.grid = model.grid->deepCopy();
+    for (GridPtr& grid : copy.attributes) grid = grid->deepCopyGrid();
+    return copy;
+}
+
 std::string boxText(const IndexBox& box) {
     std::string text;
     for (const Index3& corner : {box.min, box.max})

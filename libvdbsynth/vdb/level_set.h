@@ -40,6 +40,9 @@ void requireBox(const IndexBox& box, const std::string& field);
 /// @param field  names the options' field @throw Error InvalidOption (not from 1.5 to 100 voxels)
 void requireHalfWidth(double halfWidth, const std::string& field = "halfWidth");
 
+/// A copy that shares no grid with the model.
+LevelSet withOwnGrids(const LevelSet& model);
+
 std::string boxText(const IndexBox& box);
 /// Parses `i,j,k,I,J,K`. @return false unless it is exactly six whole numbers within 2^28, min <= max
 bool parseBox(const std::string& text, IndexBox& box);

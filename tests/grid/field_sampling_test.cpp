@@ -97,3 +97,16 @@ TEST_CASE("sampleTrilinear: of one voxel everywhere its value, without a gradien
         CHECK(length(sampleGradient(one, p)) == 0);
     }
 }
+
+TEST_CASE("sampleCubic: a voxel's own value at it, exact for a quadratic between", "[grid][oracle]") {
+    const IndexBox box = IndexBox::cube({0, 0, 0}, 12);
+    const auto square = [](double x, double y, double z) { return 0.1 * x * x - 0.2 * y * z + 0.3 * z - 1; };
+    const BrickField field = BrickField::fromVoxels(
+        box, {}, [&](const Index3& p) { return float(square(double(p.x), double(p.y), double(p.z))); });
+    CHECK(sampleCubic(field, {5, 6, 7}) == field.at({5, 6, 7}));
+    for (std::uint64_t i = 0; i < 200; ++i) {
+        Random random(4, i);
+        const Vec3d p{random.uniform(2, 9), random.uniform(2, 9), random.uniform(2, 9)};
+        REQUIRE(double(sampleCubic(field, cast<float>(p))) == Approx(square(p.x, p.y, p.z)).margin(1e-4));
+    }
+}

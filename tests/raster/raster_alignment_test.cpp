@@ -118,18 +118,6 @@ TEST_CASE("alignedToWorld: what rounding left of the world's axes is removed, a 
     CHECK(turnOf(sheared.axes).shear == Approx(0.6));
 }
 
-TEST_CASE("nearestFrame: a frame is its own, a reflection stays one", "[raster][oracle]") {
-    CHECK(runAlongWorld(nearestFrame(kWorldAxes)));
-    const Axes mirrored{{{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    CHECK(nearestFrame(mirrored)[0].x == -1);
-    CHECK(turnOf(kWorldAxes).degrees == 0);
-    // Symmetric shear is removed evenly.
-    const double c = std::sqrt(0.5);
-    const Axes frame = nearestFrame({{{1, 0, 0}, {c, c, 0}, {0, 0, 1}}});
-    CHECK(dot(frame[0], Vec3d{1, 0, 0}) == Approx(dot(frame[1], Vec3d{c, c, 0})));
-    CHECK(dot(frame[0], frame[1]) == Approx(0).margin(1e-14));
-}
-
 TEST_CASE("alignedToWorld: maps that flatten the volume or are no numbers are refused, memory is asked for",
           "[raster][error]") {
     const auto thrown = [](const Affine& map, std::uint64_t memory = 0) {

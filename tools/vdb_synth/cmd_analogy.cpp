@@ -9,9 +9,12 @@
 #include "libvdbsynth/pipeline/analogy/analogy.h"
 #include "libvdbsynth/pipeline/analogy/filter_analogy.h"
 #include "libvdbsynth/pipeline/convert/outputs.h"
+#include "libvdbsynth/pipeline/pose/pose.h"
 #include "libvdbsynth/vdb/control_grids.h"
 
 #include <nlohmann/json.hpp>
+
+#include <cmath>
 
 namespace vdbsynth::cli {
 namespace {
@@ -42,6 +45,16 @@ AnalogyOptions parseOptions(const Arguments& arguments) {
     return options;
 }
 
+// Of a sequence it is made once, where only B and what is written differ.
+std::vector<std::string> madeOf(const Arguments& arguments) {
+    std::vector<std::string> paths(arguments.inputs.begin(), arguments.inputs.end() - 1);
+    for (const char* name : {"rest", "mask", "direction", "exemplar-direction"}) {
+        const std::string path = pathIn(*findOption("analogy", name), arguments.text(name));
+        if (!path.empty()) paths.push_back(arguments.text(name));
+    }
+    return paths;
+}
+
 // A, A2, C, C2, ..., B. The second of a pair is loaded at the first's voxel size; the target has its own.
 struct Models {
     std::vector<LevelSet> pairs;
@@ -68,7 +81,10 @@ Models loadModels(Run& run) {
         own.resolution = 0;
         models.pairs.push_back(run.load(inputs[i + 1], own));
     }
-    models.target = run.load(inputs.back(), options);
+    // In the rest pose, if one is given: its mesh says where a place of B is.
+    const bool posed = run.arguments.has("rest");
+    options.keepSource = posed;
+    models.target = run.load(posed ? run.arguments.text("rest") : inputs.back(), options);
     return models;
 }
 
@@ -168,6 +184,64 @@ void filter(Run& run, const VolumeAnalogyOptions& synthesis) {
     run.finish();
 }
 
+// What the texture is made on, and the result there.
+struct Made {
+    LevelSet target;
+    AnalogyResult result;
+};
+
+Made makeResult(Run& run, AnalogyOptions options) {
+    Models models = loadModels(run);
+    keepNamedAttributes(run.arguments, models.pairs);
+    loadMask(run, voxelSizeOf(*models.target.grid), options);
+    options.direction = directionOf(run, "direction");
+    options.exemplarDirection = directionOf(run, "exemplar-direction");
+    std::vector<AnalogyModelPair> pairs;
+    for (std::size_t i = 0; i < models.pairs.size(); i += 2)
+        pairs.push_back({&models.pairs[i], &models.pairs[i + 1]});
+    Made made{models.target, makeAnalogyModel(pairs, models.target, options, run.context)};
+    return made;
+}
+
+// B in the pose of the frame: in the voxels of the pose at rest, with its mesh or its grid of places.
+LevelSet loadPosed(Run& run, const LevelSet& rest) {
+    const std::string& path = run.arguments.inputs.back();
+    ModelOptions options = run.modelOptions();
+    options.resolution = 0;
+    options.voxelSize = extensionOf(path) == "vdb" ? options.voxelSize : voxelSizeOf(*rest.grid);
+    options.keepSource = options.carry = true;
+    return run.load(path, options);
+}
+
+void analogyInPose(Run& run, const AnalogyOptions& options, const std::vector<std::string>& paths) {
+    if (run.arguments.has("source-map"))
+        throw Error(ErrorCode::InvalidOption,
+                    "--source-map: says where voxels of the rest pose come from; give it in a run without "
+                    "--rest, with the rest pose as B");
+    run.reserveOutputs();
+    bool now = false;
+    const auto made = run.shared<Made>("analogy at rest", madeOf(run.arguments), [&] {
+        now = true;
+        return std::make_shared<Made>(makeResult(run, options));
+    });
+    if (!now)
+        for (const std::string& path : madeOf(run.arguments)) run.noteInput(splitGridPath(path).file);
+    LevelSet atRest = made->result.model;
+    if (made->result.directions) atRest.attributes.push_back(made->result.directions);
+    PoseOptions pose;
+    pose.halfWidth = options.halfWidth;
+    pose.reach = std::ceil(made->result.reach) + 1;
+    const LevelSet posed = loadPosed(run, made->target);
+    AnalogyResult result = made->result;
+    result.model = poseModel(atRest, made->target, posed, pose, run.context);
+    ModelOutputOptions outputs;
+    outputs.adaptivity = run.arguments.real("adaptivity");
+    outputs.metadata = run.metadata();
+    writeModel(result.model, paths, outputs, run.outputs(), run.context);
+    report(run, result);
+    run.finish();
+}
+
 void analogy(Run& run) {
     const Arguments& arguments = run.arguments;
     run.requireInputs(3, 33);
@@ -187,18 +261,14 @@ void analogy(Run& run) {
         throw Error(ErrorCode::InvalidOption, "--write-directions: needs a .vdb output");
     ModelOutputOptions outputs;
     outputs.adaptivity = arguments.real("adaptivity");
-    Models models = loadModels(run);
-    keepNamedAttributes(arguments, models.pairs);
-    loadMask(run, voxelSizeOf(*models.target.grid), options);
-    options.direction = directionOf(run, "direction");
-    options.exemplarDirection = directionOf(run, "exemplar-direction");
-    std::vector<AnalogyModelPair> pairs;
-    for (std::size_t i = 0; i < models.pairs.size(); i += 2)
-        pairs.push_back({&models.pairs[i], &models.pairs[i + 1]});
-    const AnalogyResult result = makeAnalogyModel(pairs, models.target, options, run.context);
-    if (result.directions) outputs.extraGrids.push_back(result.directions);
-    writeWithMap(run, result.model, result.map, place, paths, outputs);
-    report(run, result);
+    if (arguments.has("rest")) {
+        analogyInPose(run, options, paths);
+        return;
+    }
+    const Made made = makeResult(run, options);
+    if (made.result.directions) outputs.extraGrids.push_back(made.result.directions);
+    writeWithMap(run, made.result.model, made.result.map, place, paths, outputs);
+    report(run, made.result);
     run.finish();
 }
 

@@ -3,6 +3,7 @@
 #include "libvdbsynth/io/output_set.h"
 #include "libvdbsynth/pipeline/convert/model.h"
 #include "libvdbsynth/vdb/vdb_file.h"
+#include "tools/vdb_synth/frames.h"
 #include "tools/vdb_synth/option_set.h"
 #include "tools/vdb_synth/progress.h"
 #include "tools/vdb_synth/streams.h"
@@ -10,6 +11,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <algorithm>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,10 +26,13 @@ class Run {
     std::unique_ptr<Streams> mStreams;  // first: `arguments` is read from it
 
 public:
-    Run(const Command& command, Arguments arguments, const SupervisorLine& line);
+    /// @param frames  what runs of other frames share with this one; null: this is no sequence
+    Run(const Command& command, Arguments arguments, const SupervisorLine& line,
+        FrameCache* frames = nullptr);
     ~Run();
 
-    /// As given, with temporary files in place of standard input and output.
+    /// As given, with temporary files in place of standard input and output, and a frame's number in place of
+    /// ####.
     const Arguments arguments;
     RunContext context;
 
@@ -47,6 +53,15 @@ public:
     /// loadModel; records the file's name and hash for metadata and report.
     LevelSet load(const std::string& path);
     LevelSet load(const std::string& path, const ModelOptions& options);
+    /// What `make` returns; where all of `paths` are the same for every frame of a sequence, it is made once.
+    template <typename T>
+    std::shared_ptr<T> shared(const std::string& name, const std::vector<std::string>& paths,
+                              const std::function<std::shared_ptr<T>()>& make) {
+        const bool same = frames() && std::all_of(paths.begin(), paths.end(), [&](const std::string& path) {
+                              return path.empty() || frames()->isShared(path);
+                          });
+        return same ? frames()->kept<T>(name, make) : make();
+    }
     /// Reads the grid that an option names as FILE.vdb:GRID, or a file's only grid. @throw Error BadData
     GridPtr loadGrid(const std::string& option);
     GridPtr loadGrid(const std::string& option, const std::string& text);
@@ -69,6 +84,7 @@ public:
     void finish();
 
 private:
+    FrameCache* frames() const;
     struct Impl;
     std::unique_ptr<Impl> mImpl;
     std::unique_ptr<OutputSet> mOutputs;

@@ -59,9 +59,19 @@ int printed() {
     return fail(Error(ErrorCode::Io, "standard output cannot be written"), "");
 }
 
-int execute(const Command& command, const Arguments& arguments, const SupervisorLine& line) {
+// Those of every frame; of no sequence the arguments themselves.
+std::vector<Arguments> framesOf(const Arguments& arguments) {
+    std::vector<int> numbers;
+    if (!arguments.has("frames") || !readFrames(arguments.text("frames"), numbers)) return {arguments};
+    std::vector<Arguments> all;
+    for (const int number : numbers) all.push_back(atFrame(arguments, number));
+    return all;
+}
+
+int execute(const Command& command, const Arguments& arguments, const SupervisorLine& line,
+            FrameCache* frames = nullptr) {
     try {
-        Run run(command, arguments, line);
+        Run run(command, arguments, line, frames);
         limitMemory(run.context.maxMemory);
         try {
             command.run(run);
@@ -80,6 +90,25 @@ int execute(const Command& command, const Arguments& arguments, const Supervisor
     } catch (const std::exception& error) {
         return fail(Error(ErrorCode::Solver, std::string("internal error: ") + error.what()), command.name);
     }
+}
+
+// One after the other, so that what they share is read once. The first that fails ends the sequence: frames
+// before it are written.
+int executeFrames(const Command& command, const Arguments& arguments, const SupervisorLine& line) {
+    std::vector<int> numbers;
+    readFrames(arguments.text("frames"), numbers);
+    FrameCache cache(arguments);
+    for (std::size_t n = 0; n < numbers.size(); ++n) {
+        if (!arguments.has("quiet"))
+            std::fprintf(stderr, "vdb_synth: frame %d, %zu of %zu\n", numbers[n], n + 1, numbers.size());
+        const int code = execute(command, atFrame(arguments, numbers[n]), line, &cache);
+        if (code == 0) continue;
+        if (n > 0)
+            std::fprintf(stderr, "vdb_synth: stopped at frame %d; the %zu before it are written\n",
+                         numbers[n], n);
+        return code;
+    }
+    return 0;
 }
 
 int dispatch(char** argv, const std::string& name, const std::vector<std::string>& words) {
@@ -118,13 +147,17 @@ int dispatch(char** argv, const std::string& name, const std::vector<std::string
         }
         mergeConfig(arguments);
         arguments.check();
-        refuseOverwriting(arguments, command->inputsAreOutputs);
+        checkFrames(arguments, command->inputsAreOutputs);
+        for (const Arguments& one : framesOf(arguments)) refuseOverwriting(one, command->inputsAreOutputs);
     } catch (const Error& error) {
         return fail(error, command->name);
     } catch (const std::exception& error) {
         return fail(Error(ErrorCode::InvalidOption, error.what()), command->name);
     }
-    const auto work = [&](const SupervisorLine& line) { return execute(*command, arguments, line); };
+    const auto work = [&](const SupervisorLine& line) {
+        return arguments.has("frames") ? executeFrames(*command, arguments, line)
+                                       : execute(*command, arguments, line);
+    };
     if (arguments.has("no-supervisor")) {
         installStopHandlers();
         return work(SupervisorLine());

@@ -154,6 +154,8 @@ std::string allowedText(const Option& option) {
             return "an axis and a fraction of the domain from 0 to 1, for example z=0.5";
         case Kind::Labels:
             return "numbers and ranges with commas, for example 1,4,10-20";
+        case Kind::Frames:
+            return "numbers of frames, for example 1-20, 1-20x2 for every second one, or 1,4,10-12";
         case Kind::Process:
             return "such as \"make balls\" or \"make balls --feature 12\", with a feature from 4 to 256";
         case Kind::Direction:

@@ -26,6 +26,7 @@ enum class Kind {
     Pixels,       ///< WIDTHxHEIGHT, each from `low` to `high`
     Slice,        ///< an axis and a fraction: z=0.5
     Labels,       ///< numbers and ranges with commas: 1,4,10-20
+    Frames,       ///< numbers of frames: 1-20, 1-20x2, 1,4,10-12
     Process,      ///< "make KIND", "make KIND --feature F"
     Direction,    ///< axis:x, around:y, radial, curvature, a grid, or a file of strokes
     Hole,         ///< auto, a box, or a model

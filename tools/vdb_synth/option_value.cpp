@@ -238,6 +238,7 @@ void refuseValue(const Option& option, const std::string& given) {
 
 std::string normalValue(const Option& option, const std::string& given) {
     IndexBox box;
+    std::vector<int> frames;
     if (readsPath(option)) return normalPath(option, given);
     switch (option.kind) {
         case Kind::Flag:
@@ -259,6 +260,9 @@ std::string normalValue(const Option& option, const std::string& given) {
             return normalPixels(option, given);
         case Kind::Labels:
             return normalLabels(option, given);
+        case Kind::Frames:
+            if (!readFrames(given, frames)) refuseValue(option, given);
+            return given;
         case Kind::Lengths:
         case Kind::Triple:
         case Kind::WholeTriple:

@@ -45,6 +45,9 @@ bool readSizes(const std::string& text, std::array<SizeValue, 3>& sizes);
 bool readPixels(const std::string& text, int& width, int& height);
 bool readSlice(const std::string& text, SliceValue& slice);
 bool readLabels(const std::string& text, std::vector<std::pair<double, double>>& labels);
+/// "1-20", "1-20x2" (every second), "1,4,10-12": numbers from 0 to 9999999 in the order given, at most 100
+/// 000.
+bool readFrames(const std::string& text, std::vector<int>& frames);
 bool readAxes(const std::string& text, std::array<bool, 3>& axes);
 /// "make KIND [--feature F]": the kind and its feature only.
 bool readProcess(const std::string& text, ExemplarOptions& options);

@@ -203,6 +203,14 @@ std::vector<Option> analogyTable() {
                         o.says("direction of the relief over a SAMPLE, given in the same ways")
                             .otherwiseIs("a smooth field");
                     }),
+        option(Kind::Model, "rest", "MODEL")
+            .in(Group::Controls)
+            .says("B in its rest pose: the texture is made there and carried to B, so that it stays where it "
+                  "is on "
+                  "a surface that deforms; a mesh with B's faces, or any model where B is a .vdb with a grid "
+                  "of vectors `rest` (places at rest, world); --direction and --mask are those of the rest "
+                  "pose")
+            .takenBy({"analogy"}),
         option(Kind::ModelOrGrid, "mask", "FILE")
             .in(Group::Controls)
             .says("where to put the texture: a grid of weights from 0 to 1, or the inside of a model")

@@ -8,6 +8,9 @@ std::vector<Option> runningOptionTable() {
     const std::vector<std::string> every{"convert", "info",    "crop",    "mask",           "match",
                                          "synth",   "analogy", "texture", "repeat",         "compare",
                                          "render",  "make",    "relief",  "relief-extract", "patch"};
+    std::vector<std::string> sequences;
+    for (const std::string& command : every)
+        if (command != "make") sequences.push_back(command);
     std::vector<Option> table{
         option(Kind::Seed, "seed", "N")
             .says("seed of everything random")
@@ -27,6 +30,12 @@ std::vector<Option> runningOptionTable() {
             .says("progress on standard error")
             .initially("auto")
             .takenBy(every),
+        option(Kind::Frames, "frames", "LIST")
+            .says(
+                "run once for each of these frames, such as 1-20, 1-20x2 or 1,4,10-12; #### in the names of "
+                "inputs and outputs stands for a frame's number")
+            .noting("what is the same for all frames is read once")
+            .takenBy(sequences),
         output("report", "FILE.json", {"*"})
             .says("write options, times and peak memory by stage, and counts")
             .takenBy(every),

@@ -44,6 +44,8 @@ struct Run::Impl {
     const Command& command;
     SupervisorLine line;
     ProgressLog progress;
+    FrameCache* frames = nullptr;
+    int loads = 0;
     bool quiet = false, verbose = false, reading = false;
     std::vector<std::pair<std::string, std::string>> inputs{};  // name, hash
     nlohmann::json counts = nlohmann::json::object(), quality{};
@@ -66,11 +68,12 @@ struct Run::Impl {
     }
 };
 
-Run::Run(const Command& command, Arguments given, const SupervisorLine& line)
+Run::Run(const Command& command, Arguments given, const SupervisorLine& line, FrameCache* frames)
     : mStreams(new Streams([line](const std::string& path) { line.temporary(path); })),
       arguments(mStreams->spooled(std::move(given), command.inputsAreOutputs)),
       mImpl(new Impl{command, line, ProgressLog(progressStyle(arguments))}) {
     Impl& impl = *mImpl;
+    impl.frames = frames;
     impl.quiet = arguments.has("quiet");
     impl.verbose = arguments.has("verbose");
     context.seed = arguments.wide("seed");
@@ -198,9 +201,17 @@ LevelSet Run::load(const std::string& path, const ModelOptions& given) {
     reserveOutputs();
     ModelOptions options = given;
     if (arguments.has("report")) options.keepSource = true;  // the report compares with it
-    LevelSet model = loadModel(path, options, context);
+    // The same command loads the same file with the same options, every frame.
+    const std::string name = "model " + std::to_string(mImpl->loads++) + " " + path;
+    const auto model = shared<LevelSet>(
+        name, {path}, [&] { return std::make_shared<LevelSet>(loadModel(path, options, context)); });
     noteInput(path);
-    return model;
+    // What one frame does to its grids does not reach the next.
+    return mImpl->frames ? withOwnGrids(*model) : *model;
+}
+
+FrameCache* Run::frames() const {
+    return mImpl->frames;
 }
 
 VdbMetadata Run::metadata() const {

@@ -158,6 +158,48 @@ bool readLabels(const std::string& text, std::vector<std::pair<double, double>>&
     return true;
 }
 
+namespace {
+
+constexpr int kFarFrame = 9999999;
+constexpr std::size_t kMostFrames = 100000;
+
+bool readFrame(const std::string& text, int& frame) {
+    if (text.empty() || text.size() > 7 || text.find_first_not_of("0123456789") != std::string::npos)
+        return false;
+    frame = std::atoi(text.c_str());
+    return frame <= kFarFrame;
+}
+
+// "7", "1-20" or "1-20x2".
+bool addPart(const std::string& part, std::vector<int>& frames) {
+    const std::size_t dash = part.find('-'), step = part.find('x');
+    int first = 0, last = 0, by = 1;
+    if (dash == std::string::npos) {
+        if (!readFrame(part, first)) return false;
+        last = first;
+    } else {
+        if (!readFrame(part.substr(0, dash), first)) return false;
+        const std::size_t length = step == std::string::npos ? step : step - dash - 1;
+        if (!readFrame(part.substr(dash + 1, length), last)) return false;
+        if (step != std::string::npos && (!readFrame(part.substr(step + 1), by) || by == 0)) return false;
+        if (last < first) return false;
+    }
+    for (int frame = first; frame <= last; frame += by) {
+        if (frames.size() >= kMostFrames) return false;
+        frames.push_back(frame);
+    }
+    return true;
+}
+
+}  // namespace
+
+bool readFrames(const std::string& text, std::vector<int>& frames) {
+    frames.clear();
+    const std::vector<std::string> parts = splitAtCommas(text);
+    return std::all_of(parts.begin(), parts.end(),
+                       [&](const std::string& part) { return addPart(part, frames); });
+}
+
 bool readAxes(const std::string& text, std::array<bool, 3>& axes) {
     axes = {};
     if (text == "none") return true;

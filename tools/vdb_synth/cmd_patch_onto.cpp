@@ -7,6 +7,7 @@
 #include "libvdbsynth/io/textured_mesh.h"
 #include "libvdbsynth/pipeline/convert/outputs.h"
 #include "libvdbsynth/pipeline/patch/patch_onto.h"
+#include "libvdbsynth/pipeline/patch/patch_outputs.h"
 
 #include <nlohmann/json.hpp>
 
@@ -65,15 +66,16 @@ void writePatched(Run& run, const PatchSource& source, const LevelSet& model, co
     }
     const std::vector<std::string> models = modelPaths(run);
     if (models.empty()) return;
-    if (!source.attributes.empty())
-        message(run.context, MessageLevel::Note,
-                models.front() + ": has no place for " + source.attributes.front().name +
-                    (source.attributes.size() > 1 ? " and others" : "") +
-                    " of the exemplar; a .ply carries them");
     const double voxelSize = arguments.has("voxel-size") ? arguments.real("voxel-size")
                                                          : source.voxelSize * arguments.real("scale");
-    const LevelSet made = ontoLevelSet(patched, voxelSize, run.modelOptions().halfWidth,
-                                       arguments.has("with-model") ? &model : nullptr, run.context);
+    LevelSet made = ontoLevelSet(patched, voxelSize, run.modelOptions().halfWidth,
+                                 arguments.has("with-model") ? &model : nullptr, run.context);
+    carryAttributes(ontoCloud(source, patched), made, run.context);
+    if (arguments.has("with-model") && !source.attributes.empty())
+        message(run.context, MessageLevel::Note,
+                models.front() + ": MODEL's own surface takes " + source.attributes.front().name +
+                    (source.attributes.size() > 1 ? " and others" : "") +
+                    " of the points nearest to it; without --with-model there is none of it");
     ModelOutputOptions outputs;
     outputs.adaptivity = arguments.real("adaptivity");
     outputs.metadata = run.metadata();

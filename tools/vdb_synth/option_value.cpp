@@ -64,6 +64,12 @@ std::string normalBox(const IndexBox& box) {
     return joined(parts);
 }
 
+std::string normalWorldBox(const std::array<double, 6>& box) {
+    std::vector<std::string> parts;
+    for (const double corner : box) parts.push_back(exactText(corner));
+    return joined(parts);
+}
+
 std::string normalSizes(const Option& option, const std::string& given) {
     std::array<SizeValue, 3> sizes;
     if (!readSizes(given, sizes)) refuseValue(option, given);
@@ -209,8 +215,12 @@ std::string normalPath(const Option& option, const std::string& given) {
             if (!namesGrid(given) && !isStrokeFile(given)) refuseValue(option, given);
             return fileOnly(given);
         case Kind::Hole:
-            if (given == "auto") return given;
-            if (readBox(given, box)) return normalBox(box);
+            if (option.unit == Unit::World) {
+                if (std::array<double, 6> reals; readWorldBox(given, reals)) return normalWorldBox(reals);
+            } else {
+                if (given == "auto") return given;
+                if (readBox(given, box)) return normalBox(box);
+            }
             if (!isModelPath(given)) refuseValue(option, given);
             return fileOnly(given);
         case Kind::Region:
@@ -281,7 +291,10 @@ std::string pathIn(const Option& option, const std::string& value) {
     if (!readsPath(option)) return "";
     if (option.kind == Kind::Direction && parseDirection(value, direction)) return "";
     if (option.kind == Kind::NamedImage) return value.substr(std::min(value.find('='), value.size() - 1) + 1);
-    if (option.kind == Kind::Hole && (value == "auto" || readBox(value, box))) return "";
+    std::array<double, 6> worldBox;
+    if (option.kind == Kind::Hole &&
+        (value == "auto" || readBox(value, box) || readWorldBox(value, worldBox)))
+        return "";
     if (option.kind == Kind::Region && value == "auto") return "";
     return splitGridPath(value).file;
 }

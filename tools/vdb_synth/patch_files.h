@@ -11,6 +11,15 @@ PatchSourceOptions patchSourceOptions(const Run& run);
 /// patch EXEMPLAR --onto MODEL. @throw Error InvalidOption (options of sheets), and as patchOnto
 void patchOntoModel(Run& run);
 
+/// patch [EXEMPLAR --keep] SHEET --hole BOX|MODEL. @throw Error InvalidOption (options of sheets and models),
+/// and as repairSheet
+void repairWithPatches(Run& run);
+
+/// Writes a sheet's level set, or what writeModel makes of it, with what its points carry.
+/// @throw Error as sheetLevelSet, writeModel
+void writeSheetModels(Run& run, const std::vector<std::string>& paths, const PatchSource& source,
+                      const PatchSheet& sheet, const PointCloud& cloud);
+
 /// Writes a sheet to every -o: .ply its points, all others the level set or what writeModel makes of it.
 /// @throw Error as sheetLevelSet, writeModel
 void writeSheet(Run& run, const PatchSource& source, const PatchSheet& sheet);

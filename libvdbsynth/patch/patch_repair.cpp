@@ -8,6 +8,7 @@
 #include "libvdbsynth/points/point_set_surface.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <string>
@@ -135,19 +136,47 @@ Joined joinedOf(const PatchExemplar& sheet, const std::vector<std::uint8_t>& hol
     return joined;
 }
 
-// The texture's part that is copied from.
-PatchField copiedField(const PatchField& field, const Joined& joined) {
-    if (joined.other == 0) return field;
-    PatchField part{{field.lattice.step, field.lattice.nx - joined.other, field.lattice.ny, field.lattice.nz},
-                    {}};
-    part.values.assign(field.column(joined.other, 0), field.values.data() + field.values.size());
+// A part of a field.
+PatchField partOf(const PatchField& field, int i0, int i1, int j0, int j1) {
+    const PatchLattice& l = field.lattice;
+    PatchField part{{l.step, i1 - i0, j1 - j0, l.nz}, {}};
+    for (int i = i0; i < i1; ++i)
+        part.values.insert(part.values.end(), field.column(i, j0),
+                           field.column(i, j1 - 1) + field.columnLength());
     return part;
+}
+
+// Of the four parts of a sheet beside its hole the widest: the hole would be a feature of the whole.
+PatchField besideHole(const PatchField& field, const Joined& joined) {
+    const int nx = joined.sheet.nx, ny = joined.sheet.ny;
+    int i0 = nx, i1 = 0, j0 = ny, j1 = 0;
+    for (int i = 0; i < nx; ++i)
+        for (int j = 0; j < ny; ++j)
+            if (joined.hole[joined.sheet.column(i, j)]) {
+                i0 = std::min(i0, i);
+                i1 = std::max(i1, i + 1);
+                j0 = std::min(j0, j);
+                j1 = std::max(j1, j + 1);
+            }
+    const std::array<std::array<int, 4>, 4> parts{
+        {{0, i0, 0, ny}, {i1, nx, 0, ny}, {0, nx, 0, j0}, {0, nx, j1, ny}}};
+    const auto width = [](const std::array<int, 4>& part) {
+        return std::min(part[1] - part[0], part[3] - part[2]);
+    };
+    const auto best = *std::max_element(parts.begin(), parts.end(),
+                                        [&](const auto& a, const auto& b) { return width(a) < width(b); });
+    if (width(best) < 2 * kLeastPatch) return field;
+    return partOf(field, best[0], best[1], best[2], best[3]);
 }
 
 PatchSides sidesOf(const PatchField& field, const Joined& joined, const BarredColumns& barred,
                    const PatchOptions& options, const RunContext& ctx) {
-    PatchSides sides = patchSides(copiedField(field, joined), options.patch, options.overlap, ctx);
-    if (options.patch > 0) return sides;
+    if (options.patch > 0) return patchSides(field, options.patch, options.overlap, ctx);
+    const bool own = joined.other == 0;
+    const PatchField copied =
+        own ? besideHole(field, joined) : partOf(field, joined.other, field.lattice.nx, 0, field.lattice.ny);
+    const int side = patchSide(own ? field : copied, patchFeature(copied, ctx));
+    PatchSides sides = patchSides(field, side * field.lattice.step, options.overlap, ctx);
     const int wanted = sides.patch;
     sides.patch = std::min({wanted, joined.sheet.nx, joined.sheet.ny});
     while (sides.patch > kLeastPatch && barred.places(sides.patch, sides.patch) < kFewPlaces) --sides.patch;

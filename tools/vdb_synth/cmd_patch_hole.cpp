@@ -95,9 +95,9 @@ void report(Run& run, const PatchSource& sheet, const RepairedSheet& repaired) {
                           {"apart_before", repair.borders.apartBefore},
                           {"apart_after", repair.borders.apartAfter}});
     message(run.context, MessageLevel::Note,
-            std::to_string(repair.patches) + " patches " + roundedText(repair.patch, 4) +
-                " wide fill the hole; " + std::to_string(repair.kept.size()) + " of " +
-                std::to_string(sheet.exemplar.points.size()) + " points stay as they are, " +
+            std::to_string(repair.patches) + (repair.patches == 1 ? " patch " : " patches ") +
+                roundedText(repair.patch, 4) + " wide in the hole; " + std::to_string(repair.kept.size()) +
+                " of " + std::to_string(sheet.exemplar.points.size()) + " points stay as they are, " +
                 std::to_string(repair.removed) + " lay in the hole");
 }
 

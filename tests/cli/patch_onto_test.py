@@ -1,8 +1,9 @@
 """patch --onto with the real program: points, level sets and meshes over a model, and what is refused."""
+import json
 import math
 import unittest
 
-from patch_test import BOX, egg_crate, points_ply
+from patch_test import BOX, COLOURED, egg_crate, points_ply
 from support import CliTest
 from texture_test import ply_vertices
 
@@ -48,6 +49,14 @@ class Over(CliTest):
             self.ok("patch", "crate.ply", "--onto", "tube.off", "-o", name, "--threads", threads, "--scale", 1.2, "--height-offset", 2)
         self.assertEqual(self.read("a.ply"), self.read("b.ply"))
 
+
+    def test_colours_travel(self):
+        self.write("coloured.ply", points_ply(egg_crate(colour=True), BOX, COLOURED))
+        done = self.ok("patch", "coloured.ply", "--onto", "tube.off", "-o", "o.ply", "-o", "o.vdb", "-o", "o.obj", "--with-model")
+        self.assertIn("own surface takes Cd", done.stderr)
+        grids = {g["name"]: g for g in json.loads(self.ok("info", "o.vdb", "--json").stdout)["grids"]}
+        self.assertEqual(sorted(grids), ["Cd", "surface"])
+        self.assertEqual(len([line for line in self.read("o.obj").split(b"\n") if line.startswith(b"v ")][0].split()), 7)
 
     def test_refused(self):
         onto = ("patch", "crate.ply", "--onto", "tube.off", "-o", "x.ply")

@@ -149,12 +149,11 @@ void patch(Run& run) {
 
 }  // namespace
 
-const Command kPatch{"patch",
-                     "patch EXEMPLAR -o OUT --size X,Y | --onto MODEL [options] | patch [EXEMPLAR --keep] "
-                     "SHEET --hole BOX|MODEL -o OUT",
-                     "Make a larger sheet of a geometry texture, patch by patch, on its points, lay it over "
-                     "a model, or repair "
-                     "a sheet",
-                     "vdb_synth patch mail.ply --size 4x,4x -o sheet.ply -o sheet.vdb", patch};
+const Command kPatch{
+    "patch",
+    "patch EXEMPLAR -o OUT --size X,Y | --onto MODEL [options] | patch SHEET --hole MODEL|BOX -o OUT | patch "
+    "EXEMPLAR --keep SHEET --hole MODEL|BOX -o OUT",
+    "Make a larger sheet of a geometry texture, patch by patch, lay it over a model, or repair a sheet",
+    "vdb_synth patch mail.ply --size 4x,4x -o sheet.ply -o sheet.vdb", patch};
 
 }  // namespace vdbsynth::cli

@@ -130,7 +130,7 @@ std::vector<Option> repairTable() {
         option(Kind::Hole, "hole", "MODEL|BOX")
             .measuredIn(Unit::World)
             .says("repair a sheet instead of making a larger one: replace what is inside a model or a box "
-                  "x,y,z,X,Y,Z (world), through the sheet's whole height")
+                  "x,y,z,X,Y,Z, through the sheet's whole height")
             .takenBy(kPatch),
         option(Kind::Model, "keep", "SHEET")
             .says("the sheet to repair with --hole, when EXEMPLAR is to be copied from")

@@ -6,7 +6,7 @@
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/textured_mesh.h"
 #include "libvdbsynth/pipeline/convert/outputs.h"
-#include "libvdbsynth/pipeline/patch/patch_onto.h"
+#include "libvdbsynth/pipeline/patch/patch_onto_map.h"
 #include "libvdbsynth/pipeline/patch/patch_outputs.h"
 
 #include <nlohmann/json.hpp>
@@ -19,7 +19,7 @@ namespace {
 constexpr double kDraftStep = 2;  // times the usual step
 
 void refuseSheets(const Arguments& arguments) {
-    for (const char* name : {"size", "tile", "source-map"})
+    for (const char* name : {"size", "tile"})
         if (arguments.has(name))
             throw Error(ErrorCode::InvalidOption, std::string("--") + name + ": has no effect with --onto");
     if (arguments.text("method") == "paper")
@@ -56,7 +56,8 @@ std::vector<std::string> modelPaths(const Run& run) {
     return models;
 }
 
-void writePatched(Run& run, const PatchSource& source, const LevelSet& model, const PatchedModel& patched) {
+void writePatched(Run& run, const PatchSource& source, const LevelSet* model, double scale,
+                  const PatchedModel& patched) {
     const Arguments& arguments = run.arguments;
     for (const std::string& path : run.outputPaths()) {
         if (!takesPoints(path)) continue;
@@ -66,12 +67,11 @@ void writePatched(Run& run, const PatchSource& source, const LevelSet& model, co
     }
     const std::vector<std::string> models = modelPaths(run);
     if (models.empty()) return;
-    const double voxelSize = arguments.has("voxel-size") ? arguments.real("voxel-size")
-                                                         : source.voxelSize * arguments.real("scale");
-    LevelSet made = ontoLevelSet(patched, voxelSize, run.modelOptions().halfWidth,
-                                 arguments.has("with-model") ? &model : nullptr, run.context);
+    const double voxelSize =
+        arguments.has("voxel-size") ? arguments.real("voxel-size") : source.voxelSize * scale;
+    LevelSet made = ontoLevelSet(patched, voxelSize, run.modelOptions().halfWidth, model, run.context);
     carryAttributes(ontoCloud(source, patched), made, run.context);
-    if (arguments.has("with-model") && !source.attributes.empty())
+    if (model && !source.attributes.empty())
         message(run.context, MessageLevel::Note,
                 models.front() + ": MODEL's own surface takes " + source.attributes.front().name +
                     (source.attributes.size() > 1 ? " and others" : "") +
@@ -127,8 +127,19 @@ void patchOntoModel(Run& run) {
     const LevelSet model = loadOntoModel(arguments.text("onto"), source, options, run.context);
     run.noteInput(arguments.text("onto"));
     const PatchedModel patched = patchOnto(source, model, options, run.context);
-    writePatched(run, source, model, patched);
+    writePatched(run, source, arguments.has("with-model") ? &model : nullptr, options.onto.scale, patched);
+    if (arguments.has("source-map"))
+        writeVdb(run.outputs().add(arguments.text("source-map")), patchOntoMapGrids(source, patched, options),
+                 run.metadata());
     report(run, source, patched);
+    run.finish();
+}
+
+void repeatPatchOntoMap(Run& run, const PatchOntoMapFile& map) {
+    const PatchSource source = loadRepeated(run, map.box, map.plane);
+    const PatchedModel patched = repeatPatchOnto(source, map, run.context);
+    writePatched(run, source, nullptr, map.options.scale, patched);
+    run.count("patches", patched.result.patches);
     run.finish();
 }
 

@@ -48,7 +48,7 @@ void writeSheet(Run& run, const PatchSource& source, const PatchSheet& sheet) {
     if (!models.empty()) writeSheetModels(run, models, source, sheet, sheetCloud(source, sheet));
 }
 
-void repeatPatchMap(Run& run, const PatchMapFile& map) {
+PatchSource loadRepeated(Run& run, const PatchBox& box, PatchPlane plane) {
     const std::vector<std::string>& inputs = run.arguments.inputs;
     if (inputs.size() != 2)
         throw Error(ErrorCode::ShapeMismatch, inputs[0] + ": repeat this map as: repeat MAP EXEMPLAR");
@@ -56,10 +56,15 @@ void repeatPatchMap(Run& run, const PatchMapFile& map) {
     run.reserveOutputs();
     PatchSourceOptions options;
     options.model = run.modelOptions();
-    options.plane = map.plane;
-    options.box = map.box;
-    const PatchSource source = loadPatchSource(inputs[1], options, run.context);
+    options.plane = plane;
+    options.box = box;
+    PatchSource source = loadPatchSource(inputs[1], options, run.context);
     run.noteInput(inputs[1]);
+    return source;
+}
+
+void repeatPatchMap(Run& run, const PatchMapFile& map) {
+    const PatchSource source = loadRepeated(run, map.box, map.plane);
     const PatchSheet sheet = repeatPatchSheet(source, map, run.context);
     writeSheet(run, source, sheet);
     run.count("patches", sheet.result.patches);

@@ -1,5 +1,6 @@
 #pragma once
 #include "libvdbsynth/pipeline/patch/patch_map.h"
+#include "libvdbsynth/pipeline/patch/patch_onto_map.h"
 #include "libvdbsynth/pipeline/patch/patch_outputs.h"
 #include "tools/vdb_synth/command.h"
 
@@ -23,6 +24,13 @@ void writeSheetModels(Run& run, const std::vector<std::string>& paths, const Pat
 /// Writes a sheet to every -o: .ply its points, all others the level set or what writeModel makes of it.
 /// @throw Error as sheetLevelSet, writeModel
 void writeSheet(Run& run, const PatchSource& source, const PatchSheet& sheet);
+
+/// The exemplar of repeat MAP EXEMPLAR, read as a map says; reserves the outputs.
+/// @throw Error ShapeMismatch (other inputs), and as loadPatchSource
+PatchSource loadRepeated(Run& run, const PatchBox& box, PatchPlane plane);
+
+/// repeat MAP EXEMPLAR for a map of patches over a model, without the model. @throw Error as repeatPatchMap
+void repeatPatchOntoMap(Run& run, const PatchOntoMapFile& map);
 
 /// repeat MAP EXEMPLAR for a map of patches.
 /// @throw Error ShapeMismatch, and as loadPatchSource

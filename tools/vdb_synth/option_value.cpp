@@ -205,6 +205,7 @@ std::string normalOutput(const Option& option, const std::string& given) {
 std::string normalPath(const Option& option, const std::string& given) {
     DirectionSource direction;
     IndexBox box;
+    std::array<double, 6> reals;
     std::pair<std::string, std::string> image;
     switch (option.kind) {
         case Kind::NamedImage:
@@ -215,12 +216,9 @@ std::string normalPath(const Option& option, const std::string& given) {
             if (!namesGrid(given) && !isStrokeFile(given)) refuseValue(option, given);
             return fileOnly(given);
         case Kind::Hole:
-            if (option.unit == Unit::World) {
-                if (std::array<double, 6> reals; readWorldBox(given, reals)) return normalWorldBox(reals);
-            } else {
-                if (given == "auto") return given;
-                if (readBox(given, box)) return normalBox(box);
-            }
+            if (option.unit == Unit::World && readWorldBox(given, reals)) return normalWorldBox(reals);
+            if (option.unit != Unit::World && given == "auto") return given;
+            if (option.unit != Unit::World && readBox(given, box)) return normalBox(box);
             if (!isModelPath(given)) refuseValue(option, given);
             return fileOnly(given);
         case Kind::Region:
@@ -287,15 +285,14 @@ std::string normalValue(const Option& option, const std::string& given) {
 std::string pathIn(const Option& option, const std::string& value) {
     DirectionSource direction;
     IndexBox box;
+    std::array<double, 6> reals;
     if (option.kind == Kind::Output) return value;
     if (!readsPath(option)) return "";
     if (option.kind == Kind::Direction && parseDirection(value, direction)) return "";
     if (option.kind == Kind::NamedImage) return value.substr(std::min(value.find('='), value.size() - 1) + 1);
-    std::array<double, 6> worldBox;
-    if (option.kind == Kind::Hole &&
-        (value == "auto" || readBox(value, box) || readWorldBox(value, worldBox)))
-        return "";
-    if (option.kind == Kind::Region && value == "auto") return "";
+    const bool hole = option.kind == Kind::Hole;
+    if (hole && (readBox(value, box) || readWorldBox(value, reals))) return "";
+    if ((hole || option.kind == Kind::Region) && value == "auto") return "";
     return splitGridPath(value).file;
 }
 

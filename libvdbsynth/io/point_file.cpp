@@ -36,6 +36,8 @@ struct Cleaned {
     std::size_t bare = 0;     // points without a normal, because of which all normals are
 };
 
+constexpr float kRounding = 1e-6f;  // of a length of one
+
 // Removes points that are not finite, and all normals if one point lacks its normal.
 Cleaned clean(PointContent& cloud) {
     Cleaned cleaned;
@@ -51,7 +53,9 @@ Cleaned clean(PointContent& cloud) {
         if (normals) {
             const float size = isFinite(cloud.normals[i]) ? length(cloud.normals[i]) : 0;
             cleaned.bare += !(size > 1e-6f);
-            cloud.normals[kept] = size > 1e-6f ? cloud.normals[i] * (1 / size) : Vec3f{};
+            // Of length one but for rounding they keep their bits, so that a file comes out as it went in.
+            const float scale = std::abs(size - 1) > kRounding ? 1 / size : 1.f;
+            cloud.normals[kept] = size > 1e-6f ? cloud.normals[i] * scale : Vec3f{};
         }
         ++kept;
         rows.push_back(i);

@@ -24,10 +24,15 @@ struct PatchArrangement {
     int overlap = 1;       ///< [columns] that patches reach over earlier ones; warps fade within it
     bool tile = false;     ///< the sheet continues at its opposite side
     std::vector<LaidPatch> patches;
+    /// [columns] other than 0: stays its patch's whatever is laid over it; empty: none does
+    std::vector<std::uint8_t> fixed;
     std::vector<std::int32_t> label;  ///< [nodes] patch, kNone where nothing lies yet; whole columns of it
 
     /// The sheet's column for one that may lie outside; -1 if there is none.
     std::ptrdiff_t columnAt(int i, int j) const;
+    bool isFixed(std::ptrdiff_t column) const {
+        return column >= 0 && !fixed.empty() && fixed[std::size_t(column)] != 0;
+    }
     bool known(std::ptrdiff_t column) const {
         return label[std::size_t(column) * std::size_t(lattice.nz)] != kNone;
     }

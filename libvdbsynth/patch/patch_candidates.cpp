@@ -81,7 +81,8 @@ double addDifference(const Query& query, std::size_t begin, std::size_t end, con
     return sum;
 }
 
-bool isExcluded(const PatchPlace& place, const CandidateOptions& options) {
+bool isExcluded(const PatchPlace& place, const PatchOverlap& overlap, const CandidateOptions& options) {
+    if (options.barred && options.barred->any(place.i, place.j, overlap.nx, overlap.ny)) return true;
     return std::any_of(options.excluded.begin(), options.excluded.end(), [&](const PatchPlace& other) {
         return std::abs(place.i - other.i) <= options.exclusion &&
                std::abs(place.j - other.j) <= options.exclusion;
@@ -103,6 +104,7 @@ void lower(std::atomic<double>& least, double value) {
 struct Search {
     const PatchField& exemplar;
     const Query& query;
+    const PatchOverlap& overlap;
     const CandidateOptions& options;
     std::size_t values;
     int across;
@@ -114,7 +116,7 @@ struct Search {
         parallelFor(ctx, std::size_t(rows), 4, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
                 for (int j = 0; j < across; ++j)
-                    if (!isExcluded({int(i), j}, options))
+                    if (!isExcluded({int(i), j}, overlap, options))
                         partial[i * std::size_t(across) + std::size_t(j)] =
                             addDifference(query, 0, few, exemplar.column(int(i), j), exemplar.columnLength(),
                                           0, std::numeric_limits<double>::infinity());
@@ -147,7 +149,7 @@ std::vector<PatchCandidate> patchCandidates(const PatchField& exemplar, const Pa
         throw Error(ErrorCode::Unusable, "a patch is larger than the exemplar; a smaller `patch` fits");
     const std::size_t length = exemplar.columnLength(), values = overlap.columns.size() * length;
     const Query query = queryOf(exemplar, overlap);
-    const Search search{exemplar, query, options, values, across};
+    const Search search{exemplar, query, overlap, options, values, across};
     // The best by a few columns gives a first bound, so that most others are left early.
     const std::size_t few = std::min(query.offset.size(), std::max<std::size_t>(8, query.offset.size() / 16));
     const std::vector<double> partial = search.begun(rows, few, ctx);
@@ -186,7 +188,7 @@ PatchOverlap ownOverlap(const PatchField& exemplar, const PatchPlace& place, int
 }
 
 double nearMatchLevel(const PatchField& exemplar, int patchSide, int overlapSide, int probes, int apart,
-                      const RunContext& ctx) {
+                      const RunContext& ctx, const BarredColumns* barred) {
     const int rows = std::max(1, exemplar.lattice.nx - patchSide + 1),
               across = std::max(1, exemplar.lattice.ny - patchSide + 1);
     double sum = 0;
@@ -196,7 +198,8 @@ double nearMatchLevel(const PatchField& exemplar, int patchSide, int overlapSide
         const PatchPlace place{int(random.below(std::uint32_t(rows))),
                                int(random.below(std::uint32_t(across)))};
         const PatchOverlap overlap = ownOverlap(exemplar, place, patchSide, overlapSide);
-        const auto best = patchCandidates(exemplar, overlap, {0, {place}, apart}, ctx);
+        if (barred && barred->any(place.i, place.j, overlap.nx, overlap.ny)) continue;
+        const auto best = patchCandidates(exemplar, overlap, {0, {place}, apart, barred}, ctx);
         if (best.empty()) continue;
         double least = best.front().cost;
         for (const PatchCandidate& candidate : best) least = std::min(least, candidate.cost);

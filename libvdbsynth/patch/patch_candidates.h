@@ -1,5 +1,6 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/patch/barred_columns.h"
 #include "libvdbsynth/patch/patch_field.h"
 
 #include <cstddef>
@@ -35,6 +36,7 @@ struct CandidateOptions {
     /// Places that are left out, and those up to `exclusion` columns from them along both axes.
     std::vector<PatchPlace> excluded;
     int exclusion = 0;
+    const BarredColumns* barred = nullptr;  ///< columns that no candidate may have; null: none
 };
 
 /// Psi_k [duranleau2006, section 4]: all places of the exemplar at which d <= (1 + e) min d + 1e-3 times the
@@ -50,9 +52,10 @@ std::vector<PatchCandidate> patchCandidates(const PatchField& exemplar, const Pa
 /// The mean over `probes` places of the exemplar, drawn by the seed, of d^2 over the number of values between
 /// the overlap of a patch there and the best other place, one at least `apart` columns away: what a good
 /// match costs in this exemplar. Infinite if there is no other place.
+/// @param barred  columns that no patch may have, or null
 /// @par Repeats as patchCandidates
 double nearMatchLevel(const PatchField& exemplar, int patchSide, int overlapSide, int probes, int apart,
-                      const RunContext& ctx = {});
+                      const RunContext& ctx = {}, const BarredColumns* barred = nullptr);
 
 /// The overlap of a patch of the exemplar with what would lie left of it and below.
 PatchOverlap ownOverlap(const PatchField& exemplar, const PatchPlace& place, int patchSide, int overlapSide);

@@ -1,8 +1,9 @@
 """patch --onto with the real program: points, level sets and meshes over a model, and what is refused."""
+import json
 import math
 import unittest
 
-from patch_test import BOX, egg_crate, points_ply
+from patch_test import BOX, COLOURED, egg_crate, points_ply
 from support import CliTest
 from texture_test import ply_vertices
 
@@ -49,9 +50,26 @@ class Over(CliTest):
         self.assertEqual(self.read("a.ply"), self.read("b.ply"))
 
 
+    def test_a_map_repeats(self):
+        self.ok("patch", "crate.ply", "--onto", "tube.off", "--direction", "axis:z", "-o", "a.ply", "--source-map", "map.vdb", "--scale", 1.2)
+        self.ok("repeat", "map.vdb", "crate.ply", "-o", "b.ply")
+        self.assertEqual(self.read("a.ply"), self.read("b.ply"))
+        self.write("coloured.ply", points_ply(egg_crate(colour=True), BOX, COLOURED))
+        self.ok("repeat", "map.vdb", "coloured.ply", "-o", "c.ply", "-o", "c.vdb")
+        self.assertEqual([v["source"] for v in ply_vertices(self.read("a.ply"))], [v["source"] for v in ply_vertices(self.read("c.ply"))])
+        self.fails(1, "repeat MAP EXEMPLAR", "repeat", "map.vdb", "crate.ply", "tube.off", "-o", "d.ply")
+
+    def test_colours_travel(self):
+        self.write("coloured.ply", points_ply(egg_crate(colour=True), BOX, COLOURED))
+        done = self.ok("patch", "coloured.ply", "--onto", "tube.off", "-o", "o.ply", "-o", "o.vdb", "-o", "o.obj", "--with-model")
+        self.assertIn("own surface takes Cd", done.stderr)
+        grids = {g["name"]: g for g in json.loads(self.ok("info", "o.vdb", "--json").stdout)["grids"]}
+        self.assertEqual(sorted(grids), ["Cd", "surface"])
+        self.assertEqual(len([line for line in self.read("o.obj").split(b"\n") if line.startswith(b"v ")][0].split()), 7)
+
     def test_refused(self):
         onto = ("patch", "crate.ply", "--onto", "tube.off", "-o", "x.ply")
-        for more in (("--size", "4x,4x"), ("--tile",), ("--source-map", "m.vdb"), ("--method", "paper"), ("--pairing-rounds", 2)):
+        for more in (("--size", "4x,4x"), ("--tile",), ("--method", "paper"), ("--pairing-rounds", 2)):
             self.fails(2, more[0], *onto, *more)
         self.fails(2, "--with-model", *onto, "--with-model")
         sheet = ("patch", "crate.ply", "--size", "2x,2x", "-o", "x.ply")

@@ -30,6 +30,12 @@ def egg_crate(side=48, margin=12, period=16, height=1.5, colour=False):
     return rows
 
 
+def box_off(low, high):
+    corners = [tuple((low, high)[i >> a & 1][a] for a in range(3)) for i in range(8)]
+    faces = ("0 2 3 1", "4 5 7 6", "0 1 5 4", "2 6 7 3", "0 4 6 2", "1 3 7 5")
+    return "OFF\n8 6 0\n" + "".join("%g %g %g\n" % c for c in corners) + "".join("4 %s\n" % f for f in faces)
+
+
 BOX = ("vdbsynth:domain 0,0,-4,48,48,4", "vdbsynth:plane xy")
 COLOURED = ("x", "y", "z", "nx", "ny", "nz", "red", "green", "blue")
 
@@ -92,8 +98,10 @@ class Sheets(Case):
     def test_colours_and_sources_travel(self):
         rows = egg_crate(colour=True)
         self.write("coloured.ply", points_ply(rows, BOX, COLOURED))
-        done = self.ok("patch", "coloured.ply", "--size", "60,60", "-o", "s.ply", "-o", "s.vdb")
-        self.assertIn("Cd", done.stderr)
+        self.ok("patch", "coloured.ply", "--size", "60,60", "-o", "s.ply", "-o", "s.vdb", "-o", "s.obj")
+        grids = {g["name"]: g for g in json.loads(self.ok("info", "s.vdb", "--json").stdout)["grids"]}
+        self.assertEqual(sorted(grids), ["Cd", "surface"])
+        self.assertEqual(len([l for l in self.read("s.obj").split(b"\n") if l.startswith(b"v ")][0].split()), 7)
         for v in ply_vertices(self.read("s.ply"))[:500]:
             self.assertLess(int(v["source"]), len(rows))
             self.assertGreaterEqual(v["patch"], 0)
@@ -132,6 +140,70 @@ class Sheets(Case):
         self.assertLess(max(xs) - min(xs), 6)
         self.ok("make", "terrain", "t.vdb", "--resolution", 48)
         self.ok("patch", "t.vdb", "--size", "2x,2x", "-o", "t2.vdb", "--seed", 2)
+
+
+class Repairs(Case):
+    """Of a hole that is punched into a sheet."""
+    BOX = (30, 28, 46, 44)
+
+    def punch(self, rows, name="holed.ply", columns=("x", "y", "z", "nx", "ny", "nz")):
+        x, y, X, Y = self.BOX
+        kept = [r for r in rows if not (x < r[0] < X and y < r[1] < Y)]
+        self.write(name, points_ply(kept, columns=columns))
+        return kept
+
+    def hole(self):
+        x, y, X, Y = self.BOX
+        return "%g,%g,-9,%g,%g,9" % (x, y, X, Y)
+
+    def beyond(self, v):
+        x, y, X, Y = self.BOX
+        return max(x - v["x"], v["x"] - X, y - v["y"], v["y"] - Y)
+
+    def far_points(self, name, reach):
+        return sorted(tuple(v[k] for k in ("x", "y", "z", "nx", "ny", "nz")) for v in ply_vertices(self.read(name)) if self.beyond(v) > reach)
+
+    def test_an_egg_crate_is_whole_again(self):
+        kept = self.punch(egg_crate(72, 4))
+        self.ok("patch", "holed.ply", "--hole", self.hole(), "-o", "fixed.ply", "-o", "fixed.vdb", "--report", "r.json")
+        worst, height = self.heights("fixed.ply")
+        self.assertLess(worst, 0.2)
+        self.assertAlmostEqual(height, 1.5, delta=0.05)
+        counts = self.counts()
+        self.assertEqual(counts["points_in"], len(kept))
+        self.assertGreater(counts["points_out"], len(kept) + 200)
+        # Once written as floats, what is far comes out as it went in.
+        self.ok("patch", "fixed.ply", "--hole", self.hole(), "-o", "again.ply")
+        reach = 2 * counts["overlap"] + 10
+        far = self.far_points("fixed.ply", reach)
+        self.assertGreater(len(far), 200)
+        self.assertEqual(far, self.far_points("again.ply", reach))
+        self.ok("patch", "holed.ply", "--hole", self.hole(), "-o", "b.ply", "--threads", 3)
+        self.assertEqual(self.read("fixed.ply"), self.read("b.ply"))
+
+    def test_from_an_exemplar_with_a_model_as_the_hole(self):
+        self.punch([r + (0.25, 0.5, 0.75) for r in egg_crate(72, 4)], columns=COLOURED)
+        self.write("coloured.ply", points_ply(egg_crate(colour=True), BOX, COLOURED))
+        self.write("box.off", box_off((30, 28, -9), (46, 44, 9)))
+        self.ok("patch", "coloured.ply", "--keep", "holed.ply", "--hole", "box.off", "-o", "fixed.ply")
+        worst, _ = self.heights("fixed.ply")
+        self.assertLess(worst, 0.2)
+        self.assertGreater(len({v["patch"] for v in ply_vertices(self.read("fixed.ply"))}), 1)
+
+    def test_command_lines(self):
+        self.punch(egg_crate(72, 4))
+        for code, says, words in (
+                (2, "--hole: missing", ("--keep", "holed.ply")),
+                (2, "must be a model, or a box", ("holed.ply", "--hole", "auto")),
+                (2, "every minimum below", ("holed.ply", "--hole", "5,5,5,1,9,9")),
+                (2, "cannot be combined with --hole", ("holed.ply", "--hole", self.hole(), "--size", "3x,3x")),
+                (2, "no sheets", ("holed.ply", "--hole", self.hole(), "--method", "paper")),
+                (2, "EXEMPLAR's", ("holed.ply", "--hole", self.hole(), "--margin", 3)),
+                (1, "outside the sheet", ("holed.ply", "--hole", "500,0,-9,600,9,9")),
+                (1, "whole sheet", ("holed.ply", "--hole", "-99,-99,-9,200,200,9")),
+                (1, "smaller --patch", ("holed.ply", "--hole", self.hole(), "--patch", 50))):
+            self.fails(code, says, "patch", "-o", "s.ply", *words)
+        self.assertNotIn("s.ply", self.files())
 
 
 class Refused(Case):

@@ -1,4 +1,5 @@
 """The measures of tests/quality/patches.py, on sheets that are made by hand, and its tables on a short run."""
+import json
 import subprocess
 import sys
 import unittest
@@ -29,6 +30,30 @@ def ball(radius=40.0, count=20000):
     turn, z = i * np.pi * (3 - 5 ** 0.5), 1 - 2 * i / count
     normals = np.stack([np.cos(turn) * np.sqrt(1 - z * z), np.sin(turn) * np.sqrt(1 - z * z), z], 1)
     return ply_data.Ply(normals * radius, normals, columns={"patch": (normals[:, 0] > 0).astype(np.int64)})
+
+
+@unittest.skipUnless(np, "numpy is absent")
+class RepairedMail(CliTest):
+    def test_rings_of_a_repaired_chainmail_are_whole(self):
+        self.ok("make", "chainmail", "mail.ply")
+        self.ok("patch", "mail.ply", "--size", "2x,2x", "-o", "sheet.ply")
+        sheet = ply_data.load(self.path("sheet.ply"))
+        x, y = sheet.points[:, 0], sheet.points[:, 1]
+        away = np.maximum(np.maximum(45 - x, x - 80), np.maximum(50 - y, y - 80))
+        kept = np.hstack([sheet.points, sheet.normals])[away > 0].astype(np.float32)
+        np.savetxt(self.path("holed.xyz"), kept, fmt="%.9g")
+        self.ok("patch", "mail.ply", "--keep", "holed.xyz", "--hole", "45,50,-9,80,80,40", "-o", "whole.ply", "--report", "r.json")
+        counts = json.loads(self.read("r.json"))["counts"]
+        whole = ply_data.load(self.path("whole.ply"))
+        self.assertAlmostEqual(len(whole.points) / len(sheet.points), 1, delta=0.03)
+        shares = rings.measure(whole, None, None)
+        self.assertGreaterEqual(shares["whole"], 0.98, shares)
+        self.assertGreaterEqual(shares["partners"], 0.95, shares)
+        # What is far from the hole is as it was.
+        far = kept[away[away > 0] > 2 * counts["overlap"] + 10 * counts["spacing"]]
+        self.assertGreater(len(far), 20000)
+        made = {tuple(row) for row in np.hstack([whole.points, whole.normals]).astype(np.float32).tolist()}
+        self.assertTrue(all(tuple(row) in made for row in far.tolist()))
 
 
 @unittest.skipUnless(np, "numpy is absent")

@@ -169,3 +169,12 @@ TEST_CASE("normalValue: a pixel size is one to three numbers above 0", "[tools][
         CHECK(test::contains(refusal("convert", "pixel-size", value),
                              "one to three numbers above 0, with commas"));
 }
+
+TEST_CASE("normalValue: a hole is a box of voxels, or of the world for patch, or a model", "[tools][error]") {
+    CHECK(normal("patch", "hole", "1.50,2,-3,4,5,6e0") == "1.5,2,-3,4,5,6");
+    CHECK(normal("patch", "hole", "some/hole.obj") == "hole.obj");
+    for (const char* value : {"auto", "1,2,3,4,5", "1,2,3,4,5,3", "4,2,3,1,5,6", "1,2,3,4,5,nan", "x"})
+        CHECK(test::contains(refusal("patch", "hole", value), "must be a model, or a box x,y,z,X,Y,Z"));
+    CHECK(normal("synth", "hole", "auto") == "auto");
+    CHECK(test::contains(refusal("synth", "hole", "1.5,2,3,4,5,6"), "must be a model, a box i,j,k,I,J,K"));
+}

@@ -112,8 +112,9 @@ void report(Run& run, const PatchSource& source, const PatchSheet& sheet) {
 }
 
 void patch(Run& run) {
-    run.requireInputs(1, 1);
     const Arguments& arguments = run.arguments;
+    if (arguments.has("hole") || arguments.has("keep")) return repairWithPatches(run);
+    run.requireInputs(1, 1);
     if (arguments.has("onto")) return patchOntoModel(run);
     for (const char* name : {"direction", "scale", "height-offset", "with-model"})
         if (arguments.has(name))
@@ -149,8 +150,10 @@ void patch(Run& run) {
 }  // namespace
 
 const Command kPatch{
-    "patch", "patch EXEMPLAR -o OUT --size X,Y | --onto MODEL [options]",
-    "Make a larger sheet of a geometry texture, patch by patch, on its points, or lay it over a model",
+    "patch",
+    "patch EXEMPLAR -o OUT --size X,Y | --onto MODEL [options] | patch SHEET --hole MODEL|BOX -o OUT | patch "
+    "EXEMPLAR --keep SHEET --hole MODEL|BOX -o OUT",
+    "Make a larger sheet of a geometry texture, patch by patch, lay it over a model, or repair a sheet",
     "vdb_synth patch mail.ply --size 4x,4x -o sheet.ply -o sheet.vdb", patch};
 
 }  // namespace vdbsynth::cli

@@ -6,7 +6,8 @@
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/textured_mesh.h"
 #include "libvdbsynth/pipeline/convert/outputs.h"
-#include "libvdbsynth/pipeline/patch/patch_onto.h"
+#include "libvdbsynth/pipeline/patch/patch_onto_map.h"
+#include "libvdbsynth/pipeline/patch/patch_outputs.h"
 
 #include <nlohmann/json.hpp>
 
@@ -18,7 +19,7 @@ namespace {
 constexpr double kDraftStep = 2;  // times the usual step
 
 void refuseSheets(const Arguments& arguments) {
-    for (const char* name : {"size", "tile", "source-map"})
+    for (const char* name : {"size", "tile"})
         if (arguments.has(name))
             throw Error(ErrorCode::InvalidOption, std::string("--") + name + ": has no effect with --onto");
     if (arguments.text("method") == "paper")
@@ -55,7 +56,8 @@ std::vector<std::string> modelPaths(const Run& run) {
     return models;
 }
 
-void writePatched(Run& run, const PatchSource& source, const LevelSet& model, const PatchedModel& patched) {
+void writePatched(Run& run, const PatchSource& source, const LevelSet* model, double scale,
+                  const PatchedModel& patched) {
     const Arguments& arguments = run.arguments;
     for (const std::string& path : run.outputPaths()) {
         if (!takesPoints(path)) continue;
@@ -65,15 +67,15 @@ void writePatched(Run& run, const PatchSource& source, const LevelSet& model, co
     }
     const std::vector<std::string> models = modelPaths(run);
     if (models.empty()) return;
-    if (!source.attributes.empty())
+    const double voxelSize =
+        arguments.has("voxel-size") ? arguments.real("voxel-size") : source.voxelSize * scale;
+    LevelSet made = ontoLevelSet(patched, voxelSize, run.modelOptions().halfWidth, model, run.context);
+    carryAttributes(ontoCloud(source, patched), made, run.context);
+    if (model && !source.attributes.empty())
         message(run.context, MessageLevel::Note,
-                models.front() + ": has no place for " + source.attributes.front().name +
+                models.front() + ": MODEL's own surface takes " + source.attributes.front().name +
                     (source.attributes.size() > 1 ? " and others" : "") +
-                    " of the exemplar; a .ply carries them");
-    const double voxelSize = arguments.has("voxel-size") ? arguments.real("voxel-size")
-                                                         : source.voxelSize * arguments.real("scale");
-    const LevelSet made = ontoLevelSet(patched, voxelSize, run.modelOptions().halfWidth,
-                                       arguments.has("with-model") ? &model : nullptr, run.context);
+                    " of the points nearest to it; without --with-model there is none of it");
     ModelOutputOptions outputs;
     outputs.adaptivity = arguments.real("adaptivity");
     outputs.metadata = run.metadata();
@@ -125,8 +127,19 @@ void patchOntoModel(Run& run) {
     const LevelSet model = loadOntoModel(arguments.text("onto"), source, options, run.context);
     run.noteInput(arguments.text("onto"));
     const PatchedModel patched = patchOnto(source, model, options, run.context);
-    writePatched(run, source, model, patched);
+    writePatched(run, source, arguments.has("with-model") ? &model : nullptr, options.onto.scale, patched);
+    if (arguments.has("source-map"))
+        writeVdb(run.outputs().add(arguments.text("source-map")), patchOntoMapGrids(source, patched, options),
+                 run.metadata());
     report(run, source, patched);
+    run.finish();
+}
+
+void repeatPatchOntoMap(Run& run, const PatchOntoMapFile& map) {
+    const PatchSource source = loadRepeated(run, map.box, map.plane);
+    const PatchedModel patched = repeatPatchOnto(source, map, run.context);
+    writePatched(run, source, nullptr, map.options.scale, patched);
+    run.count("patches", patched.result.patches);
     run.finish();
 }
 

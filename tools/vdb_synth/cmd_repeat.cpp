@@ -135,6 +135,7 @@ void repeat(Run& run) {
     const VdbContents contents = readVdb(mapPath, run.context);
     run.noteInput(mapPath);
     if (const auto patches = patchMapFrom(mapPath, contents.grids)) return repeatPatchMap(run, *patches);
+    if (const auto onto = patchOntoMapFrom(mapPath, contents.grids)) return repeatPatchOntoMap(run, *onto);
     const SourceMap map = sourceMapFrom(mapPath, contents.grids, run.context);
     if (run.arguments.inputs.size() - 1 != map.inputs())
         throw Error(ErrorCode::ShapeMismatch,

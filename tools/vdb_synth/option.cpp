@@ -165,7 +165,9 @@ std::string allowedText(const Option& option) {
             return "NAME=FILE with an image, for example roughness=rough.png; a name of letters, digits and "
                    "_";
         case Kind::Hole:
-            return "a model, a box i,j,k,I,J,K, or auto";
+            return option.unit == Unit::World
+                       ? "a model, or a box x,y,z,X,Y,Z, every minimum below its maximum"
+                       : "a model, a box i,j,k,I,J,K, or auto";
         case Kind::Region:
             return "a model, FILE.vdb:GRID for a grid, or auto";
         case Kind::File:

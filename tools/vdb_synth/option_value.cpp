@@ -64,6 +64,12 @@ std::string normalBox(const IndexBox& box) {
     return joined(parts);
 }
 
+std::string normalWorldBox(const std::array<double, 6>& box) {
+    std::vector<std::string> parts;
+    for (const double corner : box) parts.push_back(exactText(corner));
+    return joined(parts);
+}
+
 std::string normalSizes(const Option& option, const std::string& given) {
     std::array<SizeValue, 3> sizes;
     if (!readSizes(given, sizes)) refuseValue(option, given);
@@ -199,6 +205,7 @@ std::string normalOutput(const Option& option, const std::string& given) {
 std::string normalPath(const Option& option, const std::string& given) {
     DirectionSource direction;
     IndexBox box;
+    std::array<double, 6> reals;
     std::pair<std::string, std::string> image;
     switch (option.kind) {
         case Kind::NamedImage:
@@ -209,8 +216,9 @@ std::string normalPath(const Option& option, const std::string& given) {
             if (!namesGrid(given) && !isStrokeFile(given)) refuseValue(option, given);
             return fileOnly(given);
         case Kind::Hole:
-            if (given == "auto") return given;
-            if (readBox(given, box)) return normalBox(box);
+            if (option.unit == Unit::World && readWorldBox(given, reals)) return normalWorldBox(reals);
+            if (option.unit != Unit::World && given == "auto") return given;
+            if (option.unit != Unit::World && readBox(given, box)) return normalBox(box);
             if (!isModelPath(given)) refuseValue(option, given);
             return fileOnly(given);
         case Kind::Region:
@@ -281,12 +289,14 @@ std::string normalValue(const Option& option, const std::string& given) {
 std::string pathIn(const Option& option, const std::string& value) {
     DirectionSource direction;
     IndexBox box;
+    std::array<double, 6> reals;
     if (option.kind == Kind::Output) return value;
     if (!readsPath(option)) return "";
     if (option.kind == Kind::Direction && parseDirection(value, direction)) return "";
     if (option.kind == Kind::NamedImage) return value.substr(std::min(value.find('='), value.size() - 1) + 1);
-    if (option.kind == Kind::Hole && (value == "auto" || readBox(value, box))) return "";
-    if (option.kind == Kind::Region && value == "auto") return "";
+    const bool hole = option.kind == Kind::Hole;
+    if (hole && (readBox(value, box) || readWorldBox(value, reals))) return "";
+    if ((hole || option.kind == Kind::Region) && value == "auto") return "";
     return splitGridPath(value).file;
 }
 

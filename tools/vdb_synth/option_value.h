@@ -40,6 +40,8 @@ bool readTriple(const std::string& text, std::array<double, 3>& values);
 bool readWholeTriple(const std::string& text, Index3& values);
 bool readRange(const std::string& text, double& low, double& high);
 bool readBox(const std::string& text, IndexBox& box);
+/// A Kind::Hole of Unit::World: finite, every minimum below its maximum.
+bool readWorldBox(const std::string& text, std::array<double, 6>& values);
 bool readSheetSizes(const std::string& text, std::array<SizeValue, 2>& sizes);
 bool readSizes(const std::string& text, std::array<SizeValue, 3>& sizes);
 bool readPixels(const std::string& text, int& width, int& height);

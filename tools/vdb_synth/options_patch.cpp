@@ -125,6 +125,20 @@ std::vector<Option> paperTable() {
     };
 }
 
+std::vector<Option> repairTable() {
+    return {
+        option(Kind::Hole, "hole", "MODEL|BOX")
+            .measuredIn(Unit::World)
+            .says("repair a sheet instead of making a larger one: replace what is inside a model or a box "
+                  "x,y,z,X,Y,Z, through the sheet's whole height")
+            .takenBy(kPatch),
+        option(Kind::Model, "keep", "SHEET")
+            .says("the sheet to repair with --hole, when EXEMPLAR is to be copied from")
+            .noting("without it the input is the sheet, and its own exemplar")
+            .takenBy(kPatch),
+    };
+}
+
 std::vector<Option> ontoTable() {
     return {
         option(Kind::Model, "onto", "MODEL")
@@ -153,7 +167,8 @@ std::vector<Option> ontoTable() {
 
 std::vector<Option> patchOptionTable() {
     std::vector<Option> table = sheetTable();
-    for (const auto& more : {ontoTable(), paperTable()}) table.insert(table.end(), more.begin(), more.end());
+    for (const auto& more : {repairTable(), ontoTable(), paperTable()})
+        table.insert(table.end(), more.begin(), more.end());
     return table;
 }
 

@@ -21,6 +21,19 @@ PatchSourceOptions patchSourceOptions(const Run& run) {
     return options;
 }
 
+void writeSheetModels(Run& run, const std::vector<std::string>& paths, const PatchSource& source,
+                      const PatchSheet& sheet, const PointCloud& cloud) {
+    const Arguments& arguments = run.arguments;
+    const double voxelSize = arguments.has("voxel-size") ? arguments.real("voxel-size") : source.voxelSize;
+    LevelSet model = sheetLevelSet(source, sheet, voxelSize, run.modelOptions().halfWidth, run.context);
+    carryAttributes(cloud, model, run.context);
+    ModelOutputOptions outputs;
+    outputs.adaptivity = arguments.real("adaptivity");
+    outputs.metadata = run.metadata();
+    writeModel(model, paths, outputs, run.outputs(), run.context);
+    run.describe(model);
+}
+
 void writeSheet(Run& run, const PatchSource& source, const PatchSheet& sheet) {
     std::vector<std::string> models;
     for (const std::string& path : run.outputPaths()) {
@@ -32,24 +45,10 @@ void writeSheet(Run& run, const PatchSource& source, const PatchSheet& sheet) {
         run.count("points", cloud.points.size());
         writePly(run.outputs().add(path), cloud, {});
     }
-    if (models.empty()) return;
-    if (!source.attributes.empty())
-        message(
-            run.context, MessageLevel::Note,
-            models.front() + ": has no place for " + source.attributes.front().name +
-                (source.attributes.size() > 1 ? " and others" : "") +
-                " of the exemplar; a .ply carries them, and convert SHEET.ply makes any other file of that");
-    const Arguments& arguments = run.arguments;
-    const double voxelSize = arguments.has("voxel-size") ? arguments.real("voxel-size") : source.voxelSize;
-    const LevelSet model = sheetLevelSet(source, sheet, voxelSize, run.modelOptions().halfWidth, run.context);
-    ModelOutputOptions outputs;
-    outputs.adaptivity = arguments.real("adaptivity");
-    outputs.metadata = run.metadata();
-    writeModel(model, models, outputs, run.outputs(), run.context);
-    run.describe(model);
+    if (!models.empty()) writeSheetModels(run, models, source, sheet, sheetCloud(source, sheet));
 }
 
-void repeatPatchMap(Run& run, const PatchMapFile& map) {
+PatchSource loadRepeated(Run& run, const PatchBox& box, PatchPlane plane) {
     const std::vector<std::string>& inputs = run.arguments.inputs;
     if (inputs.size() != 2)
         throw Error(ErrorCode::ShapeMismatch, inputs[0] + ": repeat this map as: repeat MAP EXEMPLAR");
@@ -57,10 +56,15 @@ void repeatPatchMap(Run& run, const PatchMapFile& map) {
     run.reserveOutputs();
     PatchSourceOptions options;
     options.model = run.modelOptions();
-    options.plane = map.plane;
-    options.box = map.box;
-    const PatchSource source = loadPatchSource(inputs[1], options, run.context);
+    options.plane = plane;
+    options.box = box;
+    PatchSource source = loadPatchSource(inputs[1], options, run.context);
     run.noteInput(inputs[1]);
+    return source;
+}
+
+void repeatPatchMap(Run& run, const PatchMapFile& map) {
+    const PatchSource source = loadRepeated(run, map.box, map.plane);
     const PatchSheet sheet = repeatPatchSheet(source, map, run.context);
     writeSheet(run, source, sheet);
     run.count("patches", sheet.result.patches);

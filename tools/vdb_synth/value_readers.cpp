@@ -78,6 +78,14 @@ bool readTriple(const std::string& text, std::array<double, 3>& values) {
     return true;
 }
 
+bool readWorldBox(const std::string& text, std::array<double, 6>& values) {
+    const std::vector<std::string> parts = splitAtCommas(text);
+    if (parts.size() != 6) return false;
+    for (std::size_t i = 0; i < 6; ++i)
+        if (!parseReal(parts[i], values[i]) || !std::isfinite(values[i])) return false;
+    return values[0] < values[3] && values[1] < values[4] && values[2] < values[5];
+}
+
 bool readWholeTriple(const std::string& text, Index3& values) {
     std::array<double, 3> reals{};
     if (!readTriple(text, reals)) return false;

@@ -58,8 +58,8 @@ private:
     bool inPatch(int i, int j) const { return i >= 0 && j >= 0 && i < mNx && j < mNy; }
     // Twice the distances, so that the middle of an even side has one.
     bool inCore(int i, int j) const {
-        return mCore >= 0 && std::abs(2 * i + 1 - mNx) <= 2 * mCore + 1 &&
-               std::abs(2 * j + 1 - mNy) <= 2 * mCore + 1;
+        return mCore >= 0 && !mArrangement.isFixed(sheetColumn(i, j)) &&
+               std::abs(2 * i + 1 - mNx) <= 2 * mCore + 1 && std::abs(2 * j + 1 - mNy) <= 2 * mCore + 1;
     }
     std::ptrdiff_t sheetColumn(int i, int j) const {
         return mArrangement.columnAt(mPatch.at.i + i, mPatch.at.j + j);
@@ -114,7 +114,7 @@ private:
     // yes: the cell goes to the new patch. Of a cell with columns of both kinds the old ones decide.
     void addColumn(int i, int j, CutProblem& problem) {
         const std::uint32_t first = firstNode(i, j);
-        bool besideNew = false, besideOld = false;
+        bool besideNew = false, besideOld = mArrangement.isFixed(sheetColumn(i, j));
         for (const auto& [di, dj] : {std::pair{1, 0}, {0, 1}, {-1, 0}, {0, -1}}) {
             const std::ptrdiff_t column = sheetColumn(i + di, j + dj);
             if (column < 0) continue;

@@ -14,7 +14,7 @@ namespace vdbsynth {
 ///
 /// D clamped to +-1.5 steps: nothing where both are empty, little where both have the same surface, 3 where
 /// one has a wall that the other lacks. Nodes beside what only the old patches cover stay with these, nodes
-/// beside what only the new one covers go to it.
+/// beside what only the new one covers go to it; fixed columns (PatchArrangement::fixed) stay.
 /// Where the overlap has over 6000 nodes, cells of 2^3 of them go to one side together.
 /// @param patch  number of the patch, already in arrangement.patches
 /// @param core   columns from its middle that go to the patch in any case; -1: none. For a patch over what is

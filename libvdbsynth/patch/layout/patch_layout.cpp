@@ -22,7 +22,8 @@ constexpr double kGood = 2;  // times the cost of a good match
 PatchLayer::PatchLayer(const PatchField& exemplar, const LayoutOptions& options,
                        PatchArrangement& arrangement, const RunContext& ctx)
     : mExemplar(exemplar), mOptions(options), mArrangement(arrangement), mContext(ctx) {
-    mGood = kGood * nearMatchLevel(exemplar, options.patch, options.overlap, kProbes, options.overlap, ctx);
+    mGood = kGood * nearMatchLevel(exemplar, options.patch, options.overlap, kProbes, options.overlap, ctx,
+                                   options.barred);
 }
 
 PatchOverlap PatchLayer::overlapAt(const PatchPlace& at, int nx, int ny, int rim) const {
@@ -34,7 +35,8 @@ PatchOverlap PatchLayer::overlapAt(const PatchPlace& at, int nx, int ny, int rim
         for (int j = 0; j < ny; ++j) {
             const bool inRim = i < rim || j < rim || i >= nx - rim || j >= ny - rim;
             const std::ptrdiff_t column = mArrangement.columnAt(at.i + i, at.j + j);
-            if (!inRim || column < 0 || !mArrangement.known(column)) continue;
+            if (column < 0 || !mArrangement.known(column)) continue;
+            if (!inRim && !mArrangement.isFixed(column)) continue;
             overlap.columns.push_back({i, j});
             overlap.values.resize(overlap.values.size() + length);
             readColumn(mExemplar, mArrangement, at.i + i, at.j + j,
@@ -71,13 +73,14 @@ std::vector<PatchPlace> PatchLayer::continuations(const PatchPlace& at, const Pa
 
 PatchCandidate PatchLayer::choose(const PatchPlace& at, const PatchOverlap& overlap) const {
     Random random(mContext.seed, mArrangement.patches.size(), kChoice);
-    if (overlap.columns.empty()) {
+    if (overlap.columns.empty() && !mOptions.barred) {
         const auto rows = std::uint32_t(mExemplar.lattice.nx - overlap.nx + 1),
                    across = std::uint32_t(mExemplar.lattice.ny - overlap.ny + 1);
         const int i = int(random.below(rows)), j = int(random.below(across));
         return {{i, j}, 0};
     }
-    CandidateOptions options{mOptions.tolerance, continuations(at, overlap), mOptions.overlap};
+    CandidateOptions options{mOptions.tolerance, continuations(at, overlap), mOptions.overlap,
+                             mOptions.barred};
     auto candidates = patchCandidates(mExemplar, overlap, options, mContext);
     const double values = double(overlap.values.size());
     const auto least = [&] {
@@ -89,8 +92,11 @@ PatchCandidate PatchLayer::choose(const PatchPlace& at, const PatchOverlap& over
         options.excluded.clear();
         candidates = patchCandidates(mExemplar, overlap, options, mContext);
     }
+    if (candidates.empty())
+        throw Error(ErrorCode::Unusable,
+                    "no place of the exemplar holds a whole patch beside the hole; a smaller `patch` fits");
     PatchCandidate chosen = candidates[random.below(std::uint32_t(candidates.size()))];
-    chosen.cost /= values;
+    chosen.cost /= std::max(1.0, values);
     return chosen;
 }
 

@@ -9,7 +9,8 @@ struct LayoutOptions {
     int overlap = 4;  ///< at least 1, under `patch`: how far a patch reaches over earlier ones, at least
     double tolerance = 0.1;  ///< e of the candidates, 0..10
     bool tile = false;
-    int repairs = 2;  ///< 0..20 rounds in which patches are laid over the worst seams
+    int repairs = 2;                        ///< 0..20 rounds in which patches are laid over the worst seams
+    const BarredColumns* barred = nullptr;  ///< columns of the exemplar that no patch copies; null: none
 };
 
 /// Places patches over a sheet in scan-line order, each by the candidates of its overlap

@@ -12,6 +12,8 @@ struct PlanePlace {
     double x = 0, y = 0;
 };
 
+inline constexpr double kOntoRim = 4;  ///< [steps] that disks are wider than their patches
+
 /// A patch over a surface: a round piece of the exemplar on a disk of sites.
 struct OntoPatch {
     SurfaceDisk disk;   ///< some steps wider than the patch, so that its surface is smooth at the patch's rim

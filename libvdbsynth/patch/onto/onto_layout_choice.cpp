@@ -16,7 +16,6 @@ namespace {
 constexpr std::uint32_t kChoice = 0x63686f6f;
 constexpr int kProbes = 12;
 constexpr double kGood = 2;    // times the cost of a good match
-constexpr double kRim = 4;     // [steps] that disks are wider than patches
 constexpr int kRounds = 2;     // of moving and turning
 constexpr float kNear = 2;     // [steps] from a surface, of nodes that say how to
 constexpr double kKept = 3;    // how much more the field's direction counts than that of what lies around
@@ -185,7 +184,7 @@ void OntoLayer::fit(const OntoOverlap& overlap, OntoPatch& patch) const {
 std::size_t OntoLayer::lay(std::uint32_t centre, double middle, double core) {
     OntoPatch patch;
     patch.radius = mRadius;
-    patch.disk = mDisks.around(centre, mRadius + kRim * mExemplar.lattice.step);
+    patch.disk = mDisks.around(centre, mRadius + kOntoRim * mExemplar.lattice.step);
     const OntoOverlap overlap = overlapOf(patch.disk, middle);
     const PatchCandidate chosen = choose(overlap, patch.disk);
     patch.from = middleOf(chosen.place);

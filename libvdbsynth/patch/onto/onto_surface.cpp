@@ -46,4 +46,15 @@ OntoSurface ontoSurface(std::vector<Vec3f> points, std::vector<Vec3f> normals,
     return surface;
 }
 
+OntoSurface ontoSurfaceAlong(std::vector<Vec3f> points, std::vector<Vec3f> normals,
+                             std::vector<Vec3f> tangents, const RunContext& ctx) {
+    if (points.empty()) throw Error(ErrorCode::EmptyInput, "the model has no surface to lay patches over");
+    if (tangents.size() != points.size())
+        throw Error(ErrorCode::ShapeMismatch, "sites and directions differ in number");
+    OntoSurface surface;
+    surface.sites = bothWays(sitesOfPoints(std::move(points), std::move(normals), kNeighbours, ctx));
+    surface.tangent = std::move(tangents);
+    return surface;
+}
+
 }  // namespace vdbsynth

@@ -23,4 +23,10 @@ struct OntoSurface {
 OntoSurface ontoSurface(std::vector<Vec3f> points, std::vector<Vec3f> normals,
                         const std::vector<Vec3f>& directions, double spacing, const RunContext& ctx = {});
 
+/// The same with directions that are known already, as of a surface that was kept.
+/// @param tangents  [sites] length 1
+/// @throw Error EmptyInput, ShapeMismatch, Cancelled   @par Repeats as ontoSurface
+OntoSurface ontoSurfaceAlong(std::vector<Vec3f> points, std::vector<Vec3f> normals,
+                             std::vector<Vec3f> tangents, const RunContext& ctx = {});
+
 }  // namespace vdbsynth

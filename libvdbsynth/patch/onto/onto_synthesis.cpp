@@ -52,6 +52,29 @@ double middleHeight(const PatchExemplar& exemplar) {
     return low <= high ? 0.5 * (low + high) : 0.5 * exemplar.size.z;
 }
 
+// The disks of an arrangement, from their centres.
+void remakeDisks(const OntoSurface& surface, OntoArrangement& arrangement, const RunContext& ctx) {
+    const auto require = [](bool holds) {
+        if (!holds)
+            throw Error(ErrorCode::ShapeMismatch, "the map's patches and its surface do not fit together");
+    };
+    require(arrangement.label.size() == surface.sites.size() * std::size_t(arrangement.nz));
+    SurfaceDisks disks(surface);
+    Stage stage(ctx, "laying patches", arrangement.patches.size());
+    for (OntoPatch& patch : arrangement.patches) {
+        require(patch.disk.centre < surface.sites.size());
+        patch.disk = disks.around(patch.disk.centre, patch.radius + kOntoRim * arrangement.step);
+        stage.advance();
+    }
+    for (std::uint32_t site = 0; site < surface.sites.size(); ++site)
+        for (int k = 0; k < arrangement.nz; ++k) {
+            const std::int32_t label = arrangement.column(site)[k];
+            require(label < std::int32_t(arrangement.patches.size()) &&
+                    (label < 0) == (arrangement.column(site)[0] < 0) &&
+                    (label < 0 || arrangement.patches[std::size_t(label)].disk.find(site) >= 0));
+        }
+}
+
 }  // namespace
 
 void validate(const OntoOptions& options) {
@@ -101,8 +124,9 @@ OntoResult synthesizeOnto(const PatchExemplar& exemplar, const OntoSurface& surf
     SheetOptions sheet;
     sheet.reach = options.warp ? layout.overlap : 0;
     sheet.blend = options.blend;
-    OntoPointsResult made = ontoPoints(exemplar, exemplarSurface, field, surface, result.arrangement,
-                                       middleHeight(exemplar) - options.heightOffset, sheet, ctx);
+    result.zero = middleHeight(exemplar) - options.heightOffset;
+    OntoPointsResult made =
+        ontoPoints(exemplar, exemplarSurface, field, surface, result.arrangement, result.zero, sheet, ctx);
     result.warp = secondsSince(begin);
     result.sheet = std::move(made.sheet);
     result.borders = made.borders;
@@ -110,6 +134,36 @@ OntoResult synthesizeOnto(const PatchExemplar& exemplar, const OntoSurface& surf
     result.step = field.lattice.step;
     result.patch = layout.patch * result.step;
     result.overlap = layout.overlap * result.step;
+    result.patches = result.arrangement.patches.size();
+    return result;
+}
+
+OntoResult repeatOnto(const PatchExemplar& exemplar, const OntoSurface& surface, OntoArrangement arrangement,
+                      double zero, const OntoOptions& options, const RunContext& ctx) {
+    validate(options);
+    PointSetSurfaceOptions kind;
+    kind.kernel = exemplar.kernel;
+    const PointSetSurface exemplarSurface(exemplar.points, exemplar.normals, kind, ctx);
+    const PatchField field = patchField(exemplarSurface, exemplar.points,
+                                        latticeOf(exemplar.size, arrangement.step), {}, kFieldReach, ctx);
+    if (field.lattice.nz != arrangement.nz)
+        throw Error(ErrorCode::ShapeMismatch,
+                    "the exemplar is not as high as the map's; give one whose box is that of the run's own");
+    OntoResult result;
+    result.arrangement = std::move(arrangement);
+    remakeDisks(surface, result.arrangement, ctx);
+    SheetOptions sheet;
+    sheet.reach =
+        options.warp ? double(std::lround(result.arrangement.overlap / result.arrangement.step)) : 0.0;
+    sheet.blend = options.blend;
+    OntoPointsResult made =
+        ontoPoints(exemplar, exemplarSurface, field, surface, result.arrangement, zero, sheet, ctx);
+    result.zero = zero;
+    result.sheet = std::move(made.sheet);
+    result.borders = made.borders;
+    result.bend = made.bend;
+    result.step = field.lattice.step;
+    result.overlap = result.arrangement.overlap;
     result.patches = result.arrangement.patches.size();
     return result;
 }

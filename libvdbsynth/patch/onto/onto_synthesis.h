@@ -33,6 +33,7 @@ struct OntoResult {
     SheetPoints sheet;  ///< places as the surface's sites
     OntoArrangement arrangement;
     double patch = 0, overlap = 0, step = 0;  ///< [world] as used; of the patch the diameter
+    double zero = 0;  ///< [world] plane space, the height that lies on the surface itself
     std::size_t patches = 0;
     BorderStats borders;
     OntoBend bend;
@@ -47,5 +48,14 @@ struct OntoResult {
 /// @par Repeats same bits for any number of threads
 OntoResult synthesizeOnto(const PatchExemplar& exemplar, const OntoSurface& surface,
                           const OntoOptions& options, const RunContext& ctx = {});
+
+/// The points of an arrangement that is known already, of its own exemplar bit for bit, or of another one.
+/// @param arrangement  its disks need only a centre; they are made again
+/// @param zero     OntoResult::zero   @param options  warp and blend are read
+/// @throw Error ShapeMismatch (an exemplar of another height, centres or labels beyond the surface, a site
+/// beyond its patch's disk), Memory, Cancelled
+/// @par Repeats same bits for any number of threads
+OntoResult repeatOnto(const PatchExemplar& exemplar, const OntoSurface& surface, OntoArrangement arrangement,
+                      double zero, const OntoOptions& options, const RunContext& ctx = {});
 
 }  // namespace vdbsynth

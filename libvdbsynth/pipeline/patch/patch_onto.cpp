@@ -130,10 +130,10 @@ PatchedModel patchOnto(const PatchSource& source, const LevelSet& model, const P
         const double voxels = std::clamp(spacing / voxelSizeOf(*model.grid), kLeastVoxels, 100.0);
         PointCloud cloud = levelSetToPoints(*model.grid, {voxels}, ctx);
         dropCaps(model, cloud);
-        const OntoSurface surface = surfaceOf(cloud, spacing, options, ctx);
+        patched.surface = surfaceOf(cloud, spacing, options, ctx);
         patched.origin = cloud.origin;
-        patched.result = synthesizeOnto(patched.exemplar, surface, options.onto, ctx);
-        describe(surface, patched.result, options.onto.scale, ctx);
+        patched.result = synthesizeOnto(patched.exemplar, patched.surface, options.onto, ctx);
+        describe(patched.surface, patched.result, options.onto.scale, ctx);
         return patched;
     });
 }

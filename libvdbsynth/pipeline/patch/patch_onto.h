@@ -30,7 +30,8 @@ LevelSet loadOntoModel(const std::string& path, const PatchSource& source, const
 struct PatchedModel {
     PatchExemplar exemplar;  ///< scaled
     OntoResult result;
-    Vec3d origin;  ///< [world] that the result's places are relative to
+    OntoSurface surface;  ///< that it lies on
+    Vec3d origin;         ///< [world] that the result's places are relative to
 };
 
 /// Lays an exemplar over the zero level of a model (patch/onto/onto_synthesis.h): sites evenly spread on it,

@@ -1,10 +1,12 @@
 #include "libvdbsynth/pipeline/patch/patch_outputs.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/patch/patch_field.h"
 #include "libvdbsynth/pipeline/convert/field_model_steps.h"
 #include "libvdbsynth/points/point_set_surface.h"
+#include "libvdbsynth/vdb/convert/attribute_grids.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +16,7 @@ namespace {
 
 constexpr int kTile = 64;   // voxels along the plane that are measured at once
 constexpr float kNear = 1;  // voxels from the points that are measured: only the zero level is meant
+constexpr const char *kPatchName = "patch", *kSourceName = "source";
 constexpr int kBeyond = 4;  // voxels beyond the domain
 
 bool insideSheet(const Vec3f& at, const PatchSheet& sheet) {
@@ -126,6 +129,18 @@ BrickField sheetField(const PatchSheet& sheet, double kernel, const VoxelWriter&
 
 }  // namespace
 
+void carryAttributes(const PointCloud& cloud, LevelSet& model, const RunContext& ctx) {
+    PointCloud carried = cloud;
+    carried.attributes.erase(
+        std::remove_if(carried.attributes.begin(), carried.attributes.end(),
+                       [](const Attribute& a) { return a.name == kPatchName || a.name == kSourceName; }),
+        carried.attributes.end());
+    if (carried.attributes.empty()) return;
+    std::vector<GridPtr> grids =
+        withThreads(ctx, [&] { return attributesToGrids(carried, *model.grid, ctx); });
+    model.attributes.insert(model.attributes.end(), grids.begin(), grids.end());
+}
+
 bool takesPoints(const std::string& path) {
     return extensionOf(path) == "ply";
 }
@@ -135,7 +150,7 @@ PointCloud sheetCloud(const PatchSource& source, const PatchSheet& sheet) {
     const SheetPoints& points = sheet.result.sheet;
     PointCloud cloud;
     std::vector<std::size_t> rows;
-    Attribute patch = wholeNumbers("patch"), number = wholeNumbers("source");
+    Attribute patch = wholeNumbers(kPatchName), number = wholeNumbers(kSourceName);
     // Near the exemplar's own coordinates floats may be coarse: the corner is the origin there.
     const double far =
         std::max({std::abs(exemplar.corner.x), std::abs(exemplar.corner.y), std::abs(exemplar.corner.z)});

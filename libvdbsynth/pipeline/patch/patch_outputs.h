@@ -27,6 +27,12 @@ PointCloud sheetCloud(const PatchSource& source, const PatchSheet& sheet);
 LevelSet sheetLevelSet(const PatchSource& source, const PatchSheet& sheet, double voxelSize, double halfWidth,
                        const RunContext& ctx = {});
 
+/// Gives a level set of points what they carry, but `patch` and `source`, which are numbers of points: a grid
+/// for each attribute over the band, colours as `Cd` (vdb/convert/attribute_grids.h). Meshes of it carry the
+/// same at their vertices.
+/// @par Repeats same bits for any number of threads
+void carryAttributes(const PointCloud& cloud, LevelSet& model, const RunContext& ctx = {});
+
 /// True for a path that takes points: .ply. All others take the level set, or a mesh of it (writeModel).
 bool takesPoints(const std::string& path);
 

@@ -7,6 +7,7 @@
 #include "libvdbsynth/patch/patch_size.h"
 #include "libvdbsynth/patch/patch_synthesis.h"
 #include "libvdbsynth/points/point_set_surface.h"
+#include "libvdbsynth/vdb/convert/attribute_grids.h"
 #include "libvdbsynth/vdb/convert/level_set_to_points.h"
 
 #include <openvdb/openvdb.h>
@@ -94,9 +95,12 @@ bool isCap(const Vec3f& point, const Vec3f& normal, const PatchBox& box, double 
 }
 
 Content fromModel(const std::string& path, const PatchSourceOptions& options, const RunContext& ctx) {
-    const LevelSet model = loadModel(path, options.model, ctx);
+    ModelOptions carrying = options.model;
+    carrying.carry = true;
+    const LevelSet model = loadModel(path, carrying, ctx);
     PointCloud cloud = levelSetToPoints(*model.grid, {kModelSpacing}, ctx);
     Content content;
+    content.attributes = gridsToAttributes(model.attributes, cloud.points, cloud.origin, ctx);
     content.points = std::move(cloud.points);
     content.normals = std::move(cloud.normals);
     content.origin = cloud.origin;
@@ -142,11 +146,14 @@ double marginOf(const Content& content, PatchPlane plane, double spacing, const 
 
 void dropCaps(PatchPlane plane, Content& content, const std::string& path, const RunContext& ctx) {
     std::vector<Vec3f> points, normals;
+    std::vector<std::size_t> rows;
     for (std::size_t p = 0; p < content.points.size(); ++p) {
         if (isCap(content.points[p], content.normals[p], content.bounds, content.voxelSize, plane)) continue;
         points.push_back(content.points[p]);
         normals.push_back(content.normals[p]);
+        rows.push_back(p);
     }
+    content.attributes = selectRows(content.attributes, rows);
     if (points.size() < content.points.size())
         message(ctx, MessageLevel::Detail,
                 path + ": " + std::to_string(content.points.size() - points.size()) +
@@ -190,6 +197,8 @@ PatchSource loadPatchSource(const std::string& path, const PatchSourceOptions& o
     PatchBox box = content.bounds;
     if (options.box) {
         box = {options.box->min - content.origin, options.box->max - content.origin};
+    } else if (options.whole) {
+        // As it is: the bounds of the points.
     } else if (content.box) {
         box = *content.box;
     } else {
@@ -206,6 +215,9 @@ PatchSource loadPatchSource(const std::string& path, const PatchSourceOptions& o
     source.exemplar.kernel = fittingKernel(source.exemplar.points, source.exemplar.normals, spacing, ctx);
     source.exemplar.corner = source.exemplar.corner + content.origin;
     source.attributes = std::move(content.attributes);
+    source.isPoints = points;
+    if (options.whole)
+        source.cloud = {std::move(content.points), std::move(content.normals), {}, content.origin};
     source.voxelSize = content.voxelSize > 0 ? content.voxelSize : spacing;
     return source;
 }

@@ -1,6 +1,7 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/geometry/attribute.h"
+#include "libvdbsynth/geometry/point_cloud.h"
 #include "libvdbsynth/patch/patch_exemplar.h"
 #include "libvdbsynth/pipeline/convert/model.h"
 
@@ -16,6 +17,8 @@ struct PatchSourceOptions {
     /// none:
     /// a third of a patch, of level sets what fields read beyond the box, 7 spacings.
     std::optional<double> margin;
+    bool whole = false;  ///< the box is that of the points, whatever the file says, and `margin` is not read;
+                         ///< PatchSource::cloud is kept
     std::optional<PatchBox> box;  ///< [world] the texture's, height included; the file's is not read then
 };
 
@@ -28,6 +31,10 @@ struct PatchSource {
     Attributes attributes;  ///< of the file's points, in the order of PatchExemplar::number
     double voxelSize = 1;   ///< [world] of level sets made of it
     bool recorded = false;  ///< the file says its box
+    /// Of a whole source the points as they were read, without attributes, in the order of
+    /// PatchExemplar::number.
+    PointCloud cloud;
+    bool isPoints = false;  ///< the file holds points
 };
 
 /// Any supported geometry as a texture of oriented points.

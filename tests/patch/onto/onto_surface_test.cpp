@@ -58,3 +58,17 @@ TEST_CASE("ontoSurface: errors, threads and cancelling") {
         REQUIRE(length(one.tangent[s] - four.tangent[s]) == 0);
     CHECK(test::thrownWhenCancelled(run).code == int(ErrorCode::Cancelled));
 }
+
+TEST_CASE("ontoSurfaceAlong: the surface again from what was kept of it, and errors") {
+    const test::PointShape ball = test::spiralSphere(300, 5);
+    const OntoSurface made = ontoSurface(ball.point, ball.normal, {}, 1);
+    const OntoSurface again = ontoSurfaceAlong(made.sites.point, made.sites.normal, made.tangent);
+    CHECK(again.sites.begin == made.sites.begin);
+    CHECK(again.sites.neighbours == made.sites.neighbours);
+    for (std::size_t s = 0; s < made.tangent.size(); ++s)
+        REQUIRE(length(made.tangent[s] - again.tangent[s]) == 0);
+    CHECK(test::thrownBy([&] { ontoSurfaceAlong({}, {}, {}); }).code == int(ErrorCode::EmptyInput));
+    CHECK(test::thrownBy([&] {
+              ontoSurfaceAlong(ball.point, ball.normal, {{1, 0, 0}});
+          }).code == int(ErrorCode::ShapeMismatch));
+}

@@ -5,10 +5,15 @@
 #include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/grid_reader.h"
+#include "libvdbsynth/vdb/level_set.h"
+#include "libvdbsynth/vdb/read/field_kind.h"
+#include "libvdbsynth/vdb/redistance.h"
+#include "libvdbsynth/vdb/vdb_file.h"
 
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -92,17 +97,35 @@ BrickField sampledScalar(const openvdb::GridBase& grid, const ControlFrame& fram
                                 });
 }
 
+namespace {
+
+constexpr float kFade = 3;  // [voxels] of the frame, inside a solid mask
+
+// A mask that is a solid, as a level set with distances on the lattice of its frame; null: it holds numbers.
+FloatGridConstPtr solidMask(const openvdb::GridBase& grid, const ControlFrame& frame, const std::string& what,
+                            const RunContext& ctx) {
+    const FloatGridPtr field = asFloat(openvdb::ConstPtrCast<openvdb::GridBase>(grid.copyGrid()));
+    if (!field || kindOf(*field, ctx) == FieldKind::Density) return nullptr;
+    const LevelSet solid = modelFromGrids(what, {field}, {}, ctx);
+    return resampleLevelSet(*solid.grid, *frame.like, kFade + 2, what, ctx);
+}
+
+}  // namespace
+
 BrickField sampledWeight(const openvdb::GridBase& grid, const ControlFrame& frame, float strength,
                          const std::string& what, const RunContext& ctx) {
-    constexpr float kFade = 3;  // [voxels]
-    const bool solid = grid.getGridClass() == openvdb::GRID_LEVEL_SET;
-    const float border = kFade * float(frame.like->voxelSize()[0]);
+    const FloatGridConstPtr solid = solidMask(grid, frame, what, ctx);
     const BrickField scalar = sampledScalar(grid, frame, what, ctx);
+    const BrickField depth = solid ? sampledScalar(*solid, frame, what, ctx) : BrickField();
+    const float fade = kFade * float(frame.like->voxelSize()[0]);
     return BrickField::generate(scalar.box(), ctx, [&](const IndexBox& brick, float* samples) {
+        std::array<float, BrickField::kSamples> distance{};
         scalar.readBox(brick.min, brick.size(), samples);
-        for (int i = 0; i < BrickField::kSamples; ++i) {
-            const float value = solid ? 0.5f - samples[i] / (2 * border) : samples[i];
-            samples[i] = strength * std::clamp(value, 0.f, 1.f);
+        if (solid) depth.readBox(brick.min, brick.size(), distance.data());
+        for (std::size_t i = 0; i < distance.size(); ++i) {
+            // Outside the mask's own surface nothing may change, whatever the resampling made of it.
+            const float share = !solid ? samples[i] : samples[i] < 0 ? -distance[i] / fade : 0;
+            samples[i] = share > 0 ? strength * std::min(share, 1.f) : 0;
         }
     });
 }

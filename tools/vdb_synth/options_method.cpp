@@ -205,7 +205,8 @@ std::vector<Option> analogyTable() {
                     }),
         option(Kind::ModelOrGrid, "mask", "FILE")
             .in(Group::Controls)
-            .says("where to put the texture: a grid of weights from 0 to 1, or the inside of a model")
+            .says("where to put the texture: a grid of weights from 0 to 1, or the inside of a model; "
+                  "elsewhere B's voxels keep their bits")
             .takenBy({"analogy", "relief"})
             .butFor(
                 "relief",

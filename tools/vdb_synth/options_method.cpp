@@ -37,7 +37,7 @@ std::vector<Option> resultTable() {
         axisChoices("border", "KIND",
                     {{"cut", ""}, {"object", ""}, {"tile", "the result repeats without a seam"}})
             .says("how the result ends along an axis that grows")
-            .otherwiseIs("cut where a domain is recorded, else object")
+            .otherwiseIs("cut where a domain is recorded or a clip left the model cut open, else object")
             .takenBy({"synth"}),
         option(Kind::Box, "box", "BOX")
             .measuredIn(Unit::Voxels)

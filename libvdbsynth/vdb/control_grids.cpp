@@ -1,8 +1,10 @@
 #include "libvdbsynth/vdb/control_grids.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/math/lattice.h"
+#include "libvdbsynth/math/trigonometry.h"
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/grid_reader.h"
 #include "libvdbsynth/vdb/level_set.h"
@@ -14,14 +16,34 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <functional>
 
 namespace vdbsynth {
 namespace {
 
+// Velocities and rotation vectors are both vectors; only what is said of a grid tells them apart.
+void refuseVelocity(const openvdb::GridBase& grid) {
+    std::string name = grid.getName();
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    const bool named = name == "v" || name == "vel" || name.find("velocity") != std::string::npos;
+    if (!named && grid.getGridClass() != openvdb::GRID_STAGGERED &&
+        grid.getVectorType() != openvdb::VEC_CONTRAVARIANT_RELATIVE &&
+        grid.getVectorType() != openvdb::VEC_CONTRAVARIANT_ABSOLUTE)
+        return;
+    throw Error(ErrorCode::BadData,
+                "`rotationMap`: grid \"" + grid.getName() +
+                    "\" is a velocity or another vector of space; it must hold rotation vectors (the axis "
+                    "times the angle in radians, vector type invariant), or angles about z");
+}
+
 GridReader rotationReader(const openvdb::GridBase& grid) {
-    if (GridReader vectors = vectorReader(grid, GridSampling::Nearest)) return vectors;
+    if (GridReader vectors = vectorReader(grid, GridSampling::Nearest)) {
+        refuseVelocity(grid);
+        return vectors;
+    }
     return scalarReader(grid, GridSampling::Nearest, "`rotationMap`");
 }
 
@@ -157,6 +179,13 @@ std::vector<WantedVariant> wantedVariants(const openvdb::GridBase* exemplarMap,
             wanted[i] = own.at(worldOf(voxel), voxel);
         }
     });
+    double most = 0;
+    for (const WantedVariant& want : wanted) most = std::max(most, length(want.rotation));
+    if (most > 2 * kPi)
+        message(ctx, MessageLevel::Warning,
+                "`rotationMap`: angles up to " + roundedText(most, 3) +
+                    " radians, over a full turn; it must hold rotation vectors, the axis times the angle in "
+                    "radians, or angles about z");
     return wanted;
 }
 

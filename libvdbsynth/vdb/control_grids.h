@@ -42,7 +42,8 @@ GridConstPtr asControl(const FloatGridConstPtr& grid);
 /// @param exemplarMap  numbers of exemplars, 0 to exemplars - 1, or null: 0 everywhere
 /// @param rotation  rotation vectors, or angles about z [radians], or null
 /// @param scale     0.25 to 4, or null; inactive zeros mean 1
-/// @throw Error BadData (a grid of another kind), Unusable (a value out of range, with its position)
+/// @throw Error BadData (a grid of another kind; rotations that are velocities by name, class or vector
+/// type), Unusable (a value out of range, with its position). Angles over a full turn are a warning.
 std::vector<WantedVariant> wantedVariants(const openvdb::GridBase* exemplarMap,
                                           const openvdb::GridBase* rotation, const openvdb::GridBase* scale,
                                           int exemplars, const ControlFrame& frame,

@@ -135,6 +135,36 @@ TEST_CASE("wantedVariants: numbers, turns and scales of every fourth voxel", "[p
     CHECK(error(turn.get(), nullptr, nullptr).code == int(ErrorCode::BadData));
 }
 
+TEST_CASE("wantedVariants: a velocity is no grid of rotations", "[pipeline][error]") {
+    openvdb::initialize();
+    const auto like = openvdb::FloatGrid::create(3.f);
+    const ControlFrame frame = frameOver({{0, 0, 0}, {7, 7, 7}}, *like);
+    const auto refused = [&](const openvdb::GridBase& grid) {
+        const test::Thrown error = test::thrownBy([&] { wantedVariants(nullptr, &grid, nullptr, 1, frame); });
+        return error.code == int(ErrorCode::BadData) && test::contains(error.message, "`rotationMap`") &&
+               test::contains(error.message, "rotation vectors");
+    };
+    const auto turns = openvdb::Vec3SGrid::create(openvdb::Vec3f(0, 0, 1));
+    CHECK_FALSE(refused(*turns));
+    for (const char* name : {"v", "vel", "Velocity", "particle_velocity"}) {
+        turns->setName(name);
+        CHECK(refused(*turns));
+    }
+    turns->setName("turns");
+    CHECK_FALSE(refused(*turns));
+    turns->setVectorType(openvdb::VEC_CONTRAVARIANT_RELATIVE);
+    CHECK(refused(*turns));
+    turns->setVectorType(openvdb::VEC_INVARIANT);
+    turns->setGridClass(openvdb::GRID_STAGGERED);
+    CHECK(refused(*turns));
+    // Of the right kind, but over a full turn.
+    std::string said;
+    RunContext ctx;
+    ctx.onMessage = [&](MessageLevel, const std::string& text) { said += text; };
+    wantedVariants(nullptr, openvdb::FloatGrid::create(7.f).get(), nullptr, 1, frame, ctx);
+    CHECK(test::contains(said, "over a full turn"));
+}
+
 TEST_CASE("fieldOfNumbers: every voxel has the number of its four", "[pipeline][oracle]") {
     const BrickField field = fieldOfNumbers({3, 1, 4, 1, 5, 9, 2, 6}, {{10, 10, 10}, {15, 17, 16}});
     CHECK(field.box().size() == Index3{6, 8, 7});

@@ -221,3 +221,20 @@ TEST_CASE("makeAnalogyModel: a target thinner than a neighbourhood is worked on,
     CHECK(gone.code == int(ErrorCode::EmptyInput));
     CHECK(test::contains(gone.message, "smaller voxels for the target"));
 }
+
+TEST_CASE("makeAnalogyModel: what is wrong with a direction names the field that gave it",
+          "[pipeline][error]") {
+    const ModelPair pair = pairOf("dilation");
+    const auto nowhere = openvdb::Vec3SGrid::create(openvdb::Vec3f(0));
+    const auto said = [&](const GridConstPtr& own, const GridConstPtr& exemplar) {
+        AnalogyOptions options;
+        if (own) options.direction.kind = DirectionSource::Kind::Grid;
+        if (exemplar) options.exemplarDirection.kind = DirectionSource::Kind::Grid;
+        options.direction.grid = own;
+        options.exemplarDirection.grid = exemplar;
+        return test::thrownBy([&] { applied(pair, tori(), options); }).message;
+    };
+    CHECK(test::contains(said(nowhere, nullptr), "the target: `direction` gives no direction"));
+    CHECK(test::contains(said(nullptr, nowhere), "the pair: `exemplarDirection` gives no direction"));
+    CHECK(test::contains(said(nullptr, openvdb::Int32Grid::create()), "`exemplarDirection`: grid"));
+}

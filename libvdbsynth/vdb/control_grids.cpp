@@ -1,22 +1,49 @@
 #include "libvdbsynth/vdb/control_grids.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/math/lattice.h"
+#include "libvdbsynth/math/trigonometry.h"
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/grid_reader.h"
+#include "libvdbsynth/vdb/level_set.h"
+#include "libvdbsynth/vdb/read/field_kind.h"
+#include "libvdbsynth/vdb/redistance.h"
+#include "libvdbsynth/vdb/vdb_file.h"
 
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 #include <functional>
 
 namespace vdbsynth {
 namespace {
 
+// Velocities and rotation vectors are both vectors; only what is said of a grid tells them apart.
+void refuseVelocity(const openvdb::GridBase& grid) {
+    std::string name = grid.getName();
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    const bool named = name == "v" || name == "vel" || name.find("velocity") != std::string::npos;
+    if (!named && grid.getGridClass() != openvdb::GRID_STAGGERED &&
+        grid.getVectorType() != openvdb::VEC_CONTRAVARIANT_RELATIVE &&
+        grid.getVectorType() != openvdb::VEC_CONTRAVARIANT_ABSOLUTE)
+        return;
+    throw Error(ErrorCode::BadData,
+                "`rotationMap`: grid \"" + grid.getName() +
+                    "\" is a velocity or another vector of space; it must hold rotation vectors (the axis "
+                    "times the angle in radians, vector type invariant), or angles about z");
+}
+
 GridReader rotationReader(const openvdb::GridBase& grid) {
-    if (GridReader vectors = vectorReader(grid, GridSampling::Nearest)) return vectors;
+    if (GridReader vectors = vectorReader(grid, GridSampling::Nearest)) {
+        refuseVelocity(grid);
+        return vectors;
+    }
     return scalarReader(grid, GridSampling::Nearest, "`rotationMap`");
 }
 
@@ -92,17 +119,35 @@ BrickField sampledScalar(const openvdb::GridBase& grid, const ControlFrame& fram
                                 });
 }
 
+namespace {
+
+constexpr float kFade = 3;  // [voxels] of the frame, inside a solid mask
+
+// A mask that is a solid, as a level set with distances on the lattice of its frame; null: it holds numbers.
+FloatGridConstPtr solidMask(const openvdb::GridBase& grid, const ControlFrame& frame, const std::string& what,
+                            const RunContext& ctx) {
+    const FloatGridPtr field = asFloat(openvdb::ConstPtrCast<openvdb::GridBase>(grid.copyGrid()));
+    if (!field || kindOf(*field, ctx) == FieldKind::Density) return nullptr;
+    const LevelSet solid = modelFromGrids(what, {field}, {}, ctx);
+    return resampleLevelSet(*solid.grid, *frame.like, kFade + 2, what, ctx);
+}
+
+}  // namespace
+
 BrickField sampledWeight(const openvdb::GridBase& grid, const ControlFrame& frame, float strength,
                          const std::string& what, const RunContext& ctx) {
-    constexpr float kFade = 3;  // [voxels]
-    const bool solid = grid.getGridClass() == openvdb::GRID_LEVEL_SET;
-    const float border = kFade * float(frame.like->voxelSize()[0]);
+    const FloatGridConstPtr solid = solidMask(grid, frame, what, ctx);
     const BrickField scalar = sampledScalar(grid, frame, what, ctx);
+    const BrickField depth = solid ? sampledScalar(*solid, frame, what, ctx) : BrickField();
+    const float fade = kFade * float(frame.like->voxelSize()[0]);
     return BrickField::generate(scalar.box(), ctx, [&](const IndexBox& brick, float* samples) {
+        std::array<float, BrickField::kSamples> distance{};
         scalar.readBox(brick.min, brick.size(), samples);
-        for (int i = 0; i < BrickField::kSamples; ++i) {
-            const float value = solid ? 0.5f - samples[i] / (2 * border) : samples[i];
-            samples[i] = strength * std::clamp(value, 0.f, 1.f);
+        if (solid) depth.readBox(brick.min, brick.size(), distance.data());
+        for (std::size_t i = 0; i < distance.size(); ++i) {
+            // Outside the mask's own surface nothing may change, whatever the resampling made of it.
+            const float share = !solid ? samples[i] : samples[i] < 0 ? -distance[i] / fade : 0;
+            samples[i] = share > 0 ? strength * std::min(share, 1.f) : 0;
         }
     });
 }
@@ -134,6 +179,13 @@ std::vector<WantedVariant> wantedVariants(const openvdb::GridBase* exemplarMap,
             wanted[i] = own.at(worldOf(voxel), voxel);
         }
     });
+    double most = 0;
+    for (const WantedVariant& want : wanted) most = std::max(most, length(want.rotation));
+    if (most > 2 * kPi)
+        message(ctx, MessageLevel::Warning,
+                "`rotationMap`: angles up to " + roundedText(most, 3) +
+                    " radians, over a full turn; it must hold rotation vectors, the axis times the angle in "
+                    "radians, or angles about z");
     return wanted;
 }
 

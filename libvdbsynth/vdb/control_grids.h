@@ -24,8 +24,13 @@ struct ControlFrame {
 BrickField sampledScalar(const openvdb::GridBase& grid, const ControlFrame& frame, const std::string& what,
                          const RunContext& ctx = {});
 
-/// A weight at every voxel of a frame: `strength` times a scalar grid's value clamped to 0..1; a level set is
-/// 1 inside and fades to 0 over three voxels around its surface. @throw Error as sampledScalar
+/// A mask of any kind as a weight at every voxel of a frame, 0 to `strength`; how analogy and relief read
+/// masks. Numbers and truths count as they are, clamped to 0..1. A solid (a level set, or distances of no
+/// class), whatever its voxels and band, is 0 outside and rises to 1 over the first three voxels of the frame
+/// inside it.
+/// @throw Error as sampledScalar; of a solid as modelFromGrids (vdb_file.h) and resampleLevelSet
+/// (redistance.h): EmptyInput (thinner than the frame's voxels)
+/// @par Cost    O(voxels of the frame), and of a solid's surface   @par Repeats same bits for any threads
 BrickField sampledWeight(const openvdb::GridBase& grid, const ControlFrame& frame, float strength,
                          const std::string& what, const RunContext& ctx = {});
 
@@ -37,7 +42,8 @@ GridConstPtr asControl(const FloatGridConstPtr& grid);
 /// @param exemplarMap  numbers of exemplars, 0 to exemplars - 1, or null: 0 everywhere
 /// @param rotation  rotation vectors, or angles about z [radians], or null
 /// @param scale     0.25 to 4, or null; inactive zeros mean 1
-/// @throw Error BadData (a grid of another kind), Unusable (a value out of range, with its position)
+/// @throw Error BadData (a grid of another kind; rotations that are velocities by name, class or vector
+/// type), Unusable (a value out of range, with its position). Angles over a full turn are a warning.
 std::vector<WantedVariant> wantedVariants(const openvdb::GridBase* exemplarMap,
                                           const openvdb::GridBase* rotation, const openvdb::GridBase* scale,
                                           int exemplars, const ControlFrame& frame,

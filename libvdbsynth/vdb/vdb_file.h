@@ -58,7 +58,8 @@ void validate(const VdbReadOptions& options);
 /// sheared transform resampled to its smallest voxel), others repaired (read/level_set_repair.h: turned
 /// signs, lost insides, open cuts, wrong backgrounds), fields of no class as level sets if their values are
 /// distances, fog volumes by `iso`. What is guessed or repaired is said in a note. A recorded domain is kept;
-/// else the domain is the box of the solid.
+/// else the domain is the box of the solid. The domain of a solid that a clip cut open along planes ends at
+/// them and counts as recorded, with air at the other sides.
 /// @throw Error  Io (missing, a directory, not readable), BadData (not a VDB file, truncated, corrupt, NaN,
 ///               no usable grid, frustum transform), InvalidOption (an iso that is no number, null grids),
 ///               Unusable (a fog volume without iso), EmptyInput (no surface)

@@ -134,6 +134,24 @@ GridPtr picked(const std::string& path, const std::vector<GridPtr>& grids, const
     return grid;
 }
 
+// A solid that a clip cut is part of a larger one: its domain ends at the cuts, and at the other sides, where
+// none is known, with air beyond the band.
+void endAtCuts(const CutFaces& cut, const std::string& path, LevelSet& model) {
+    if (std::none_of(cut.begin(), cut.end(), [](bool face) { return face; })) return;
+    const IndexBox solid = solidBox(*model.grid, path);
+    const int air = int(std::ceil(halfWidthOf(*model.grid))) + 1;
+    for (std::size_t face = 0; face < 6; ++face) {
+        const bool high = face % 2;
+        const int axis = int(face / 2), end = high ? solid.max[axis] : solid.min[axis];
+        int& domain = high ? model.domain.max[axis] : model.domain.min[axis];
+        if (cut[face])
+            domain = high ? std::min(domain, end) : std::max(domain, end);
+        else if (!model.domainRecorded)
+            domain = end + (high ? air : -air);
+    }
+    model.domainRecorded = true;
+}
+
 }  // namespace
 
 void validate(const VdbReadOptions& options) {
@@ -203,6 +221,7 @@ LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& gri
         if (asFog) grid = insideOut(*grid, *options.iso);
         grid = rebuiltBy(*grid, *transform, path, ctx);
         model.domainRecorded = false;
+        sound.cut = {};  // of the sides of other voxels
     } else if (asFog) {
         grid = fogToLevelSet(path, *grid, *options.iso, ctx);
     } else if (sound.measureAnew) {
@@ -210,6 +229,7 @@ LevelSet modelFromGrids(const std::string& path, const std::vector<GridPtr>& gri
     }
     model.grid = grid;
     if (!model.domainRecorded) model.domain = solidBox(*grid, path);
+    endAtCuts(sound.cut, path, model);
     stampLevelSet(model);
     return model;
 }

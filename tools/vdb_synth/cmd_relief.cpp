@@ -15,6 +15,7 @@
 #include "libvdbsynth/pipeline/relief/relief_bake.h"
 #include "libvdbsynth/pipeline/texture/texture_sample.h"
 #include "libvdbsynth/vdb/control_grids.h"
+#include "libvdbsynth/vdb/read/field_kind.h"
 
 #include <nlohmann/json.hpp>
 
@@ -150,6 +151,17 @@ struct Mask {
     bool isModel = false;
 };
 
+// A named grid, or the only one of a file that is no solid.
+bool isGridOfWeights(Run& run, const std::string& text) {
+    if (!namesGrid(text)) return false;
+    const auto [path, name] = splitGridPath(text);
+    if (!name.empty()) return true;
+    const std::vector<GridPtr> grids = readVdbGrids(path, run.context);
+    if (grids.size() != 1) return false;
+    const FloatGridPtr field = asFloat(grids.front());
+    return !field || kindOf(*field, run.context) == FieldKind::Density;
+}
+
 Mask loadMask(Run& run, double voxelSize, ReliefOptions& options) {
     Mask mask;
     if (!run.arguments.has("mask")) {
@@ -157,7 +169,7 @@ Mask loadMask(Run& run, double voxelSize, ReliefOptions& options) {
         return mask;
     }
     const std::string text = run.arguments.text("mask");
-    if (namesGrid(text) && !splitGridPath(text).grid.empty()) {
+    if (isGridOfWeights(run, text)) {
         if (options.fade > 0)
             throw Error(ErrorCode::InvalidOption, "--fade: has no effect on a grid of weights as --mask");
         options.mask = run.loadGrid("mask");

@@ -3,12 +3,13 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/point_file.h"
-#include "libvdbsynth/io/readers/text_scanner.h"
+#include "libvdbsynth/io/points/row_text.h"
 #include "libvdbsynth/io/readers/whole_file.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace vdbsynth::cli {
@@ -18,16 +19,55 @@ bool isRows(const std::string& extension) {
     return extension == "csv" || extension == "txt" || extension == "xyz";
 }
 
+constexpr std::array<const char*, 6> kColumns{"x", "y", "z", "dx", "dy", "dz"};
+
+// Where each number of a stroke is in a row, by the names of a header.
+std::array<std::size_t, 6> columnsOf(const RowText& rows) {
+    std::vector<std::string> names = rows.names();
+    for (std::string& name : names)
+        std::transform(name.begin(), name.end(), name.begin(),
+                       [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+    std::array<std::size_t, 6> place{};
+    for (std::size_t c = 0; c < 6; ++c) {
+        const auto found = std::find(names.begin(), names.end(), kColumns[c]);
+        if (found == names.end())
+            rows.fail(std::string("neither six numbers nor a header with the columns x y z dx dy dz: no ") +
+                      kColumns[c]);
+        place[c] = std::size_t(found - names.begin());
+    }
+    return place;
+}
+
 std::vector<Stroke> strokesOfRows(const std::string& path) {
-    std::string text = readWholeFile(path);
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
-    TextScanner scanner(path, text);
+    const std::string text = readWholeFile(path);
+    RowText rows(path, text);
+    std::array<std::size_t, 6> place{0, 1, 2, 3, 4, 5};
+    std::size_t width = 6;
+    bool first = true;
     std::vector<Stroke> strokes;
-    while (!scanner.atEnd()) {
-        double values[6];
-        for (double& value : values) value = double(scanner.real());
-        strokes.push_back({{values[0], values[1], values[2]}, {values[3], values[4], values[5]}});
+    std::vector<double> values;
+    std::vector<RowWord> words;
+    while (rows.next()) {
+        if (rows.isComment()) continue;
+        if (first && !rows.beginsWithNumber()) {
+            place = columnsOf(rows);
+            width = rows.names().size();
+            first = false;
+            continue;
+        }
+        first = false;
+        values.clear();
+        words.clear();
+        rows.numbers(values, words);
+        if (values.size() != width)
+            rows.fail(std::to_string(values.size()) + " numbers; a stroke is a row of " +
+                      std::to_string(width));
+        std::array<double, 6> v{};
+        for (std::size_t c = 0; c < 6; ++c) {
+            v[c] = values[place[c]];
+            if (!std::isfinite(v[c])) rows.fail(std::string("column ") + kColumns[c] + " is no number");
+        }
+        strokes.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
     }
     return strokes;
 }

@@ -37,7 +37,7 @@ std::vector<Option> resultTable() {
         axisChoices("border", "KIND",
                     {{"cut", ""}, {"object", ""}, {"tile", "the result repeats without a seam"}})
             .says("how the result ends along an axis that grows")
-            .otherwiseIs("cut where a domain is recorded, else object")
+            .otherwiseIs("cut where a domain is recorded or a clip left the model cut open, else object")
             .takenBy({"synth"}),
         option(Kind::Box, "box", "BOX")
             .measuredIn(Unit::Voxels)
@@ -213,7 +213,8 @@ std::vector<Option> analogyTable() {
             .takenBy({"analogy"}),
         option(Kind::ModelOrGrid, "mask", "FILE")
             .in(Group::Controls)
-            .says("where to put the texture: a grid of weights from 0 to 1, or the inside of a model")
+            .says("where to put the texture: a grid of weights from 0 to 1, or the inside of a model; "
+                  "elsewhere B's voxels keep their bits")
             .takenBy({"analogy", "relief"})
             .butFor(
                 "relief",

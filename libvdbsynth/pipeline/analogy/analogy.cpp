@@ -100,12 +100,12 @@ AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const Leve
     const auto plain =
         std::make_shared<const BrickField>(gatherWideBand(*target.grid, box, cut, float(band), ctx));
     const FieldPlace place{target.grid.get(), {double(box.min.x), double(box.min.y), double(box.min.z)}, 1};
-    const FrameField frames = framesOf(plain, place, options.direction, "the target", ctx);
+    const FrameField frames = framesOf(plain, place, options.direction, "the target", "direction", ctx);
     std::vector<FrameField> pairFrames;
     for (std::size_t p = 0; p < pairs.size(); ++p)
         pairFrames.push_back(framesOf(fields[p].plain, fields[p].place,
                                       directionOfPair(*pairs[p].plain, options.exemplarDirection), "the pair",
-                                      ctx));
+                                      "exemplarDirection", ctx));
     std::vector<AnalogyPair> given;
     for (std::size_t p = 0; p < pairs.size(); ++p)
         given.push_back({fields[p].plain, fields[p].textured, &pairFrames[p], fields[p].inner});

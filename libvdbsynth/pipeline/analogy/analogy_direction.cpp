@@ -17,11 +17,11 @@ namespace {
 
 constexpr float kStrokeReach = 1.5f;  // [voxels] around a stroke's position that it applies to
 
-GridReader readerOf(const openvdb::GridBase& grid, const std::string& what) {
+GridReader readerOf(const openvdb::GridBase& grid, const std::string& field) {
     if (GridReader vectors = vectorReader(grid, GridSampling::Linear)) return vectors;
     if (GridReader gradient = gradientReader(grid)) return gradient;
-    throw Error(ErrorCode::BadData, "the direction of " + what + ": grid " + grid.getName() + " holds " +
-                                        grid.valueType() + "; vectors or a float scalar are needed");
+    throw Error(ErrorCode::BadData, "`" + field + "`: grid " + grid.getName() + " holds " + grid.valueType() +
+                                        "; vectors or a float scalar are needed");
 }
 
 // Each stroke applies to the shell around the nearest surface point.
@@ -57,7 +57,7 @@ Vec3d middleOfPoints(const SurfaceShell& shell, const FieldPlace& place) {
 }
 
 std::vector<Vec3f> givenDirections(const SurfaceShell& shell, const FieldPlace& place,
-                                   const DirectionSource& source, const std::string& what,
+                                   const DirectionSource& source, const std::string& field,
                                    const RunContext& ctx) {
     using Kind = DirectionSource::Kind;
     if (source.kind == Kind::Automatic) return curvatureDirections(shell, ctx);
@@ -71,7 +71,7 @@ std::vector<Vec3f> givenDirections(const SurfaceShell& shell, const FieldPlace& 
     if (source.kind == Kind::Around) reader = [&](const Vec3d& p) { return cross(source.axis, p - middle); };
     if (source.kind == Kind::Radial) reader = [&](const Vec3d& p) { return p - middle; };
     if (source.kind == Kind::Grid)
-        reader = [grid = readerOf(*source.grid, what)](const Vec3d& p) { return grid(p).value; };
+        reader = [grid = readerOf(*source.grid, field)](const Vec3d& p) { return grid(p).value; };
     for (std::size_t i = 0; i < shell.size(); ++i) {
         const Vec3d direction = place.fromWorldDirection(reader(place.toWorld(cast<double>(shell.point[i]))));
         if (std::isfinite(dot(direction, direction))) given[i] = cast<float>(direction);
@@ -111,20 +111,24 @@ Vec3d FieldPlace::fromWorldDirection(const Vec3d& direction) const {
 }
 
 FrameField framesOf(std::shared_ptr<const BrickField> distance, const FieldPlace& place,
-                    const DirectionSource& source, const std::string& what, const RunContext& ctx) {
+                    const DirectionSource& source, const std::string& what, const std::string& field,
+                    const RunContext& ctx) {
     Stage stage(ctx, "directions over " + what, 3);
     SurfaceShell shell = surfaceShell(*distance, ctx);
     stage.advance();
     DirectionField directions;
     try {
-        directions = directionField(shell, givenDirections(shell, place, source, what, ctx), ctx);
+        directions = directionField(shell, givenDirections(shell, place, source, field, ctx), ctx);
     } catch (const Error& error) {
         if (error.code() != ErrorCode::Unusable) throw;
+        const bool automatic = source.kind == DirectionSource::Kind::Automatic;
         throw Error(ErrorCode::Unusable,
                     what + ": " +
-                        (source.kind == DirectionSource::Kind::Automatic
-                             ? "its curvature gives no direction; set `direction`, for example along an axis"
-                             : error.what()));
+                        (automatic ? "its curvature gives no direction; set `" + field +
+                                         "`, for example along an axis"
+                                   : "`" + field +
+                                         "` gives no direction on its surface: it is along the normal "
+                                         "everywhere, or nowhere near the model"));
     }
     stage.advance();
     SweepDistance sweep = sweepDistance(shell, directions.tangent, ctx);

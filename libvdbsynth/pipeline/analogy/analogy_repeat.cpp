@@ -7,6 +7,7 @@
 #include "libvdbsynth/pipeline/analogy/analogy_steps.h"
 #include "libvdbsynth/vdb/attribute_transfer.h"
 #include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/convert/kept_voxels.h"
 
 #include <openvdb/openvdb.h>
 
@@ -68,6 +69,19 @@ void removeIslandsOf(BrickField& field, const std::vector<ExemplarSamples>& text
     }
 }
 
+// Removing islands leaves what the mask keeps: voxels of the weight 0.
+void restoreWeightless(const BrickField& target, const BrickField& weight, BrickField& field,
+                       const RunContext& ctx) {
+    field = BrickField::generate(field.box(), ctx, [&](const IndexBox& brick, float* samples) {
+        std::array<float, BrickField::kSamples> plain, share;
+        field.readBox(brick.min, brick.size(), samples);
+        target.readBox(brick.min, brick.size(), plain.data());
+        weight.readBox(brick.min, brick.size(), share.data());
+        for (std::size_t i = 0; i < plain.size(); ++i)
+            if (share[i] == 0) samples[i] = std::clamp(plain[i], -kResultBand, kResultBand);
+    });
+}
+
 // A texture that reaches farther than the map's, or another plain model, ends where there are no sources.
 void warnIfCut(const SourceMap& map, int factor, const BrickField& made, const RunContext& ctx) {
     const VoxelTable table = VoxelTable::of(map.targetBox, map.elements.voxels());
@@ -107,12 +121,16 @@ LevelSet analogyThroughMap(const SourceMap& map, int factor, const std::vector<E
     const BrickField made =
         readAnalogy(map.elements, map.analogy.depths, map.targetBox, textured, plain, factor, ctx);
     warnIfCut(map, factor, made, ctx);
-    BrickField field = blended(plain, made, weightOf(map, factor, plain.box(), ctx), ctx);
+    const BrickField weight = weightOf(map, factor, plain.box(), ctx);
+    BrickField field = blended(plain, made, weight, ctx);
     removeIslandsOf(field, textured, factor, ctx);
+    const bool masked = !map.analogy.weight.box().empty() || map.analogy.strength == 0;
+    if (masked) restoreWeightless(plain, weight, field, ctx);
+    const Index3 corner = finerBox(map.targetBox, factor).min;
     LevelSet model;
     try {
         const CloseOptions close{map.cut, map.halfWidth, kHalfWidth, voxelSizeOf(*target.grid), false};
-        const BrickField band = closedBand(field, finerBox(map.targetBox, factor).min, close, ctx);
+        const BrickField band = closedBand(field, corner, close, ctx);
         model.grid = levelSetFrom(band, map.halfWidth, *target.grid, "the result", ctx);
     } catch (const Error& error) {
         if (error.code() != ErrorCode::EmptyInput) throw;
@@ -123,6 +141,8 @@ LevelSet analogyThroughMap(const SourceMap& map, int factor, const std::vector<E
                                    : std::string("the target is thinner than the texture's depth")) +
                         "; use smaller voxels for the target, or a smaller `scale` or `strength`");
     }
+    if (masked && std::abs(halfWidthOf(*target.grid) - double(map.halfWidth)) < 1e-6)
+        keepUnchanged(*target.grid, plain, field, corner, kHalfWidth, map.halfWidth, *model.grid, ctx);
     model.domain = target.domainRecorded ? target.domain : solidBox(*model.grid, "the result");
     model.domainRecorded = target.domainRecorded;
     stampLevelSet(model);

@@ -60,9 +60,11 @@ LevelSet repeatAnalogy(const SourceMap& map, int factor, const std::vector<const
 float reachOf(const BrickField& plain, const BrickField& textured);
 
 /// Frames around a field's surface, from a source of directions.
-/// @param what  for messages, such as "the target"
+/// @param what   for messages, such as "the target"
+/// @param field  the options' field that the source is from, for messages
 /// @throw Error Unusable (no direction anywhere), EmptyInput, BadData (a grid of another kind)
 FrameField framesOf(std::shared_ptr<const BrickField> distance, const FieldPlace& place,
-                    const DirectionSource& source, const std::string& what, const RunContext& ctx);
+                    const DirectionSource& source, const std::string& what, const std::string& field,
+                    const RunContext& ctx);
 
 }  // namespace vdbsynth

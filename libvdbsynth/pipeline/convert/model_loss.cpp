@@ -2,6 +2,9 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/geometry/mesh.h"
+#include "libvdbsynth/grid/components.h"
+#include "libvdbsynth/grid/occupancy.h"
+#include "libvdbsynth/math/disjoint_sets.h"
 #include "libvdbsynth/pipeline/convert/model_steps.h"
 #include "libvdbsynth/vdb/convert/zero_level.h"
 
@@ -11,6 +14,36 @@
 #include <cmath>
 
 namespace vdbsynth {
+namespace {
+
+// Solids of a closed mesh: its connected pieces whose faces look outward.
+std::size_t solidPieces(const Mesh& mesh) {
+    DisjointSets sets(mesh.points.size());
+    const std::vector<Triangle> triangles = triangulated(mesh);
+    for (const Triangle& t : triangles) {
+        sets.join(t[0], t[1]);
+        sets.join(t[0], t[2]);
+    }
+    std::vector<double> volume(mesh.points.size());
+    for (const Triangle& t : triangles) {
+        const Vec3d a = cast<double>(mesh.points[t[0]]), b = cast<double>(mesh.points[t[1]]);
+        volume[sets.root(t[0])] += dot(a, cross(b, cast<double>(mesh.points[t[2]])));
+    }
+    return std::size_t(std::count_if(volume.begin(), volume.end(), [](double v) { return v > 0; }));
+}
+
+// Parts of the solid samples, which hang together by faces, edges and corners.
+std::size_t partsOf(const RasterField& field, const RunContext& ctx) {
+    BrickField samples = field.field;
+    const Index3 corner = samples.box().min;
+    samples.translate(Index3{0, 0, 0} - corner);
+    const Occupancy solid = Occupancy::fromField(samples, ctx);
+    return findComponents(solid.window({field.domain.min - corner, field.domain.max - corner}),
+                          Neighbours::All)
+        .sizes.size();
+}
+
+}  // namespace
 
 void sayLostHeights(const std::string& path, const Raster& raster, const RasterField& field,
                     const RunContext& ctx) {
@@ -24,11 +57,24 @@ void sayLostHeights(const std::string& path, const Raster& raster, const RasterF
     message(ctx, MessageLevel::Warning, text);
 }
 
+void sayBrokenParts(const std::string& path, std::size_t before, std::size_t after, const RunContext& ctx) {
+    constexpr double kSaid = 1.1, kWarned = 2;
+    if (double(after) <= kSaid * double(before)) return;
+    message(ctx, double(after) < kWarned * double(before) ? MessageLevel::Note : MessageLevel::Warning,
+            path + ": its " + std::to_string(before) + (before == 1 ? " part" : " parts") + " became " +
+                std::to_string(after) +
+                " in the level set, as samples that touch by an edge or corner alone come apart; to keep "
+                "them whole, resample it to samples of half the size by linear interpolation and give "
+                "`threshold` a fifth of the way from outside to solid");
+}
+
 void sayLostSamples(const std::string& path, const RasterField& field, const openvdb::FloatGrid& grid,
                     const RunContext& ctx) {
     constexpr double kSaid = 0.01, kWarned = 0.05;
     if (!(field.solidVolume > 0)) return;
-    const double volume = summarize(zeroLevelInIndexSpace(grid, 0, ctx)).signedVolume;
+    const Mesh mesh = zeroLevelInIndexSpace(grid, 0, ctx);
+    sayBrokenParts(path, partsOf(field, ctx), solidPieces(mesh), ctx);
+    const double volume = summarize(mesh).signedVolume;
     const double change = volume / field.solidVolume - 1;
     if (std::abs(change) < kSaid) return;
     message(ctx, std::abs(change) < kWarned ? MessageLevel::Note : MessageLevel::Warning,

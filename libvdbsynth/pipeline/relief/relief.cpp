@@ -11,10 +11,10 @@
 #include "libvdbsynth/pipeline/relief/relief_steps.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/convert/band_grids.h"
+#include "libvdbsynth/vdb/convert/kept_voxels.h"
 #include "libvdbsynth/vdb/coord.h"
 
 #include <openvdb/openvdb.h>
-#include <openvdb/tools/Morphology.h>
 
 #include <algorithm>
 #include <cmath>
@@ -50,43 +50,6 @@ void fit(std::vector<ReliefSample>& samples, const LevelSet& target, const Relie
     message(
         ctx, MessageLevel::Note,
         "the picture is resized by " + roundedText(result.fitted, 4) + ", so that whole periods go round");
-}
-
-// Voxels that differ from the target's.
-openvdb::MaskGrid::Ptr changedVoxels(const BrickField& made, const PreparedTarget& prepared) {
-    const auto mask = openvdb::MaskGrid::create();
-    auto accessor = mask->getAccessor();
-    const BrickField& before = prepared.target.distance;
-    forEachVoxel(made.box(), [&](const Index3& p) {
-        float same;
-        const Index3 brick{p.x & ~7, p.y & ~7, p.z & ~7};
-        if (p == brick && made.constantIn({p, p + Index3{7, 7, 7}}, same)) return;
-        if (made.inside(p) != std::clamp(before.inside(p), -kLimit, kLimit))
-            accessor.setValueOn(toCoord(p + prepared.corner));
-    });
-    return mask;
-}
-
-// Far from any change the target's own voxels come back, bit for bit.
-double keepUnchanged(const openvdb::FloatGrid& target, const openvdb::MaskGrid::Ptr& changed, float halfWidth,
-                     openvdb::FloatGrid& made) {
-    openvdb::tools::dilateActiveValues(changed->tree(), int(std::ceil(halfWidth)) + 2,
-                                       openvdb::tools::NN_FACE_EDGE_VERTEX, openvdb::tools::IGNORE_TILES);
-    auto near = changed->getConstAccessor();
-    auto write = made.getAccessor();
-    std::size_t kept = 0;
-    for (auto leaf = target.tree().cbeginLeaf(); leaf; ++leaf)
-        for (auto voxel = leaf->cbeginValueAll(); voxel; ++voxel) {
-            const openvdb::Coord at = voxel.getCoord();
-            if (near.isValueOn(at)) continue;
-            if (voxel.isValueOn()) {
-                write.setValueOn(at, *voxel);
-                ++kept;
-            } else if (write.isValueOn(at)) {
-                write.setValueOff(at, *voxel);
-            }
-        }
-    return double(kept) / double(std::max<openvdb::Index64>(1, made.activeVoxelCount()));
 }
 
 // The sources of a band, by the nearest site's chart.
@@ -202,8 +165,8 @@ ReliefResult transferred(const std::vector<ReliefSource>& sources, const LevelSe
     result.model = finished(field, prepared, target, options, ctx);
     if ((masked(prepared.target) || options.strength == 0) && options.method == ReliefMethod::Default &&
         std::abs(halfWidthOf(*target.grid) - double(options.halfWidth)) < 1e-6)
-        result.unchanged = keepUnchanged(*target.grid, changedVoxels(field, prepared), options.halfWidth,
-                                         *result.model.grid);
+        result.unchanged = keepUnchanged(*target.grid, prepared.target.distance, field, prepared.corner,
+                                         kLimit, options.halfWidth, *result.model.grid, ctx);
     if (options.method == ReliefMethod::Default)
         result.sources = sourceGrids(result.model, prepared, samples, map, float(transfer.texel), ctx);
     result.levels = std::move(map.levels);

@@ -48,6 +48,15 @@ ReliefSample sampleOfPicture(const ReliefSource& source, double texel, double vo
     return reliefSample(smoothed(heights, sigma, ctx));
 }
 
+// What is wrong with a direction is said of the target's; here it is the sample's.
+Error namingExemplar(const Error& error) {
+    const std::string from = "`direction`";
+    std::string text = error.what();
+    const std::size_t at = text.find(from);
+    if (at != std::string::npos) text.replace(at, from.size(), "`exemplarDirection`");
+    return Error(error.code(), text);
+}
+
 ReliefSample sampleOfScan(const ReliefSource& source, const ReliefOptions& options, ReliefResult& result,
                           const RunContext& ctx) {
     ReliefExtractOptions extract;
@@ -67,7 +76,12 @@ ReliefSample sampleOfScan(const ReliefSource& source, const ReliefOptions& optio
     ReliefSampleOptions flat;
     if (options.wholeSample) flat.rough = 0;
     if (options.exemplarDirection) flat.maxRotation = kGivenReliefRotation;
-    ReliefSample sample = reliefSample(fields, directions, flat, ctx);
+    ReliefSample sample;
+    try {
+        sample = reliefSample(fields, directions, flat, ctx);
+    } catch (const Error& error) {
+        throw namingExemplar(error);
+    }
     sample.corner = extraction.corner;
     result.covered.push_back(sample.covered);
     message(ctx, MessageLevel::Detail,

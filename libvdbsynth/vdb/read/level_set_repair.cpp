@@ -23,6 +23,7 @@ namespace {
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
 constexpr double kNarrowest = 1.4999;  // [voxels]
+constexpr double kFewContacts = 1e-4;  // share of the outside's contacts that gaps of the band explain
 
 // change(value, active) for all values but the background. It returns the new value and may change the state.
 template <typename Change>
@@ -138,15 +139,17 @@ private:
             mWidthUnknown = true;
         }
         const bool known = believed && field().background() > 0;
-        // The outside touches the inside: a cut may have opened it, so regions end where the voxels end.
-        if (double(out.negative) > 0.005 * double(out.negative + out.positive)) {
+        // The outside touches the inside: a cut may have opened it, so regions end where the voxels end. Even
+        // a few, as one solid of many may be cut.
+        if (double(out.negative) > kFewContacts * double(out.negative + out.positive)) {
             fence(known);
             regions = std::make_unique<InactiveRegions>(field().tree(), known, mContext);
             mTurned = false;
         }
         const std::uint64_t mixed = regions->minorities();
-        writeSigns(*regions, known);
-        closeCuts();
+        const bool filled = writeSigns(*regions, known);
+        if (!closeCuts() && filled)
+            say("its inside was marked as outside; filled from the signs of its band");
         if (double(mixed) > 0.01 * double(agreeing + contacts.jumps))
             say("its band has gaps, where inside and outside are guessed from the voxels around");
     }
@@ -179,7 +182,8 @@ private:
         return votes.negative == votes.positive ? stored : votes.negative > votes.positive;
     }
 
-    void writeSigns(const InactiveRegions& regions, bool believed) {
+    // True where an inside that was known to be outside was filled.
+    bool writeSigns(const InactiveRegions& regions, bool believed) {
         const bool unknown = mResult.measureAnew || mWidthUnknown;
         const float width = unknown ? float(double(kHalfWidth) * mUnit) : field().background();
         std::uint64_t filled = 0, emptied = 0;
@@ -197,19 +201,22 @@ private:
         }
         for (const openvdb::CoordBBox& side : mFence) grid.sparseFill(side, width, /* active= */ false);
         setBackground(grid, width);
-        if (filled > 0 && believed)
-            say("its inside was marked as outside; filled from the signs of its band");
         if (emptied > 0) say("voxels outside were marked as inside; emptied by the signs of its band");
+        return filled > 0 && believed;
     }
 
-    void closeCuts() {
-        const std::string faces = closedCuts(changing(), mUnit, mContext);
-        if (faces.empty()) return;
-        say("its solid is cut open at " + faces + "; closed flat there");
+    bool closeCuts() {
+        const ClosedCuts closed = closedCuts(changing(), mUnit, mContext);
+        if (closed.names.empty()) return false;
+        mResult.cut = closed.planes;
+        const bool flat = std::count(closed.planes.begin(), closed.planes.end(), true) > 0;
+        say("its solid is cut open at " + closed.names + "; closed flat there" +
+            (flat ? ", and taken as a piece of a larger solid, whose domain ends there" : ""));
         const double present = double(field().background()) / mUnit;
         if (!mResult.measureAnew && !mWidthUnknown && present >= kNarrowest && present <= 100)
             mResult.halfWidth = float(present);
         mResult.measureAnew = true;
+        return true;
     }
 
     // A band ends early where voxels have neighbours beyond it that are nearer to the surface than it says.

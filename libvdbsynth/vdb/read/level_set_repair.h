@@ -1,5 +1,6 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/distance/close_field.h"
 #include "libvdbsynth/vdb/vdb_fwd.h"
 
 #include <string>
@@ -11,6 +12,7 @@ namespace vdbsynth {
 struct RepairedField {
     FloatGridPtr field;               ///< the given one where nothing was wrong
     bool measureAnew = false;         ///< only its zero level is to be believed, not its distances
+    CutFaces cut{};                   ///< sides where the end of the voxels cut the solid along a plane
     float halfWidth = 3;              ///< [voxels] of the band that is to be measured anew
     std::vector<std::string> said{};  ///< what was wrong and what became of it, one part of a sentence each
 };

@@ -52,9 +52,29 @@ void close(openvdb::FloatGrid::Accessor& accessor, const Cut& cut, float half) {
         }
 }
 
+// The sides of which most of the area that is open lies in the outermost plane.
+CutFaces planesOf(const std::vector<Cut>& cuts) {
+    std::array<double, 6> open{}, outermost{};
+    std::array<int, 6> plane{};
+    for (const Cut& cut : cuts) {
+        const std::size_t face = std::size_t(cut.face);
+        const double area = double(cut.span) * double(cut.span);
+        const int at = cut.face % 2 ? cut.inside[cut.face / 2] : -cut.inside[cut.face / 2];
+        if (open[face] == 0 || at > plane[face]) {
+            plane[face] = at;
+            outermost[face] = 0;
+        }
+        open[face] += area;
+        if (at == plane[face]) outermost[face] += area;
+    }
+    CutFaces planes{};
+    for (std::size_t face = 0; face < 6; ++face) planes[face] = outermost[face] > 0.5 * open[face];
+    return planes;
+}
+
 }  // namespace
 
-std::string closedCuts(openvdb::FloatGrid& grid, double unit, const RunContext& ctx) {
+ClosedCuts closedCuts(openvdb::FloatGrid& grid, double unit, const RunContext& ctx) {
     static constexpr std::array<const char*, 6> kFaces{"low x",  "high x", "low y",
                                                        "high y", "low z",  "high z"};
     const std::vector<Cut> cuts = cutsOf(grid, unit);
@@ -67,10 +87,11 @@ std::string closedCuts(openvdb::FloatGrid& grid, double unit, const RunContext& 
     requireMemory(ctx, voxels * 80, "closing a level set that is cut open", "use larger voxels");
     openvdb::FloatGrid::Accessor accessor = grid.getAccessor();
     for (const Cut& cut : cuts) close(accessor, cut, float(unit / 2));
-    std::string names;
+    ClosedCuts closed;
     for (std::size_t face = 0; face < 6; ++face)
-        if (open[face]) names += std::string(names.empty() ? "" : ", ") + kFaces[face];
-    return names;
+        if (open[face]) closed.names += std::string(closed.names.empty() ? "" : ", ") + kFaces[face];
+    closed.planes = planesOf(cuts);
+    return closed;
 }
 
 }  // namespace vdbsynth

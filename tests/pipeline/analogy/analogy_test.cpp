@@ -1,6 +1,7 @@
 #include "libvdbsynth/pipeline/analogy/analogy.h"
 
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/LevelSetSphere.h>
 #include <catch2/catch.hpp>
 
 #include "libvdbsynth/grid/occupancy.h"
@@ -87,6 +88,39 @@ TEST_CASE("makeAnalogyModel: strength 0 and an empty mask leave the target as it
     masked.mask = empty;
     CHECK(solidVoxels(*applied(pair, target, masked).model.grid) == Approx(before).epsilon(0.003));
     CHECK(solidVoxels(*applied(pair, target).model.grid) > 1.5 * before);
+}
+
+TEST_CASE("makeAnalogyModel: outside a mask of any kind the target's bits stay", "[pipeline][property]") {
+    const ModelPair pair = pairOf("dilation");
+    const LevelSet target = tori();
+    const openvdb::Vec3f middle(36, 36, 36);
+    const auto solid = [&](float voxel, float band) -> GridConstPtr {
+        return openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(20.f, middle, voxel, band);
+    };
+    const auto numbers = openvdb::FloatGrid::create(0.f);
+    numbers->fill(openvdb::CoordBBox({0, 0, 0}, {30, 90, 90}), 1.f);
+    const auto truths = openvdb::BoolGrid::create(false);
+    truths->fill(openvdb::CoordBBox({0, 0, 0}, {30, 90, 90}), true);
+    for (const GridConstPtr& mask :
+         {solid(0.4f, 3), solid(1, 2), solid(3, 3), GridConstPtr(numbers), GridConstPtr(truths)}) {
+        AnalogyOptions options;
+        options.mask = mask;
+        const AnalogyResult result = applied(pair, target, options);
+        const bool isSolid = mask->getGridClass() == openvdb::GRID_LEVEL_SET;
+        std::size_t flipped = 0, changed = 0, far = 0;
+        auto made = result.model.grid->getConstAccessor();
+        for (auto it = target.grid->cbeginValueOn(); it; ++it) {
+            const openvdb::Vec3d at = target.grid->indexToWorld(it.getCoord());
+            const double outside = isSolid ? (at - openvdb::Vec3d(middle)).length() - 20 : at.x() - 30;
+            const float now = made.getValue(it.getCoord());
+            if (outside > 0.3 && (now < 0) != (*it < 0)) ++flipped;
+            if (outside > 12 && now != *it) ++far;
+            if (now != *it) ++changed;
+        }
+        CHECK(flipped == 0);
+        CHECK(far == 0);
+        CHECK(changed > 100);
+    }
 }
 
 TEST_CASE("makeAnalogyModel: attributes of the textured model are transferred, directions are written",
@@ -186,4 +220,21 @@ TEST_CASE("makeAnalogyModel: a target thinner than a neighbourhood is worked on,
     });
     CHECK(gone.code == int(ErrorCode::EmptyInput));
     CHECK(test::contains(gone.message, "smaller voxels for the target"));
+}
+
+TEST_CASE("makeAnalogyModel: what is wrong with a direction names the field that gave it",
+          "[pipeline][error]") {
+    const ModelPair pair = pairOf("dilation");
+    const auto nowhere = openvdb::Vec3SGrid::create(openvdb::Vec3f(0));
+    const auto said = [&](const GridConstPtr& own, const GridConstPtr& exemplar) {
+        AnalogyOptions options;
+        if (own) options.direction.kind = DirectionSource::Kind::Grid;
+        if (exemplar) options.exemplarDirection.kind = DirectionSource::Kind::Grid;
+        options.direction.grid = own;
+        options.exemplarDirection.grid = exemplar;
+        return test::thrownBy([&] { applied(pair, tori(), options); }).message;
+    };
+    CHECK(test::contains(said(nowhere, nullptr), "the target: `direction` gives no direction"));
+    CHECK(test::contains(said(nullptr, nowhere), "the pair: `exemplarDirection` gives no direction"));
+    CHECK(test::contains(said(nullptr, openvdb::Int32Grid::create()), "`exemplarDirection`: grid"));
 }

@@ -8,6 +8,10 @@
 #include "tests/support/raster_files.h"
 #include "tests/support/temporary_folder.h"
 
+#include <functional>
+#include <string>
+#include <vector>
+
 using namespace vdbsynth;
 
 TEST_CASE("loadModel: a mesh by resolution or voxel size, with the default said", "[pipeline][property]") {
@@ -84,4 +88,34 @@ TEST_CASE("withHalfWidth: another band, the same surface, its own band is left a
     CHECK(solidVoxels(*wide.grid) == Approx(solidVoxels(*model.grid)).epsilon(0.005));
     CHECK(wide.grid->getConstAccessor().getValue({24, 0, 0}) == Approx(2).margin(0.05));
     CHECK(test::contains(test::thrownBy([&] { withHalfWidth(model, 1); }).message, "`halfWidth`"));
+}
+
+TEST_CASE("loadModel: parts of a volume that come apart are said, with what keeps them",
+          "[pipeline][property]") {
+    const test::TemporaryFolder folder;
+    const auto said = [&](const std::function<bool(int, int, int)>& solid) {
+        std::string voxels(16 * 16 * 16, '\0'), text;
+        for (int i = 0; i < 4096; ++i) voxels[std::size_t(i)] = solid(i % 16, i / 16 % 16, i / 256) ? 1 : 0;
+        RunContext ctx;
+        ctx.onMessage = [&](MessageLevel level, const std::string& line) {
+            if (level == MessageLevel::Warning) text += line;
+        };
+        const std::vector<float> place{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+        loadModel(folder.write("v.nii", test::nifti(16, 16, 16, voxels, place)), {}, ctx);
+        return text;
+    };
+    // A line along the space diagonal: one part by corners, twelve single samples.
+    const std::string diagonal =
+        said([](int x, int y, int z) { return x == y && y == z && x > 1 && x < 14; });
+    CHECK(test::contains(diagonal, "its 1 part became 12 in the level set"));
+    CHECK(test::contains(diagonal, "`threshold`"));
+    // Along an axis it holds together, and so do two blocks apart with a void in one.
+    CHECK_FALSE(test::contains(said([](int x, int y, int z) { return x == 8 && y == 8 && z > 1 && z < 14; }),
+                               "became"));
+    CHECK_FALSE(test::contains(said([](int x, int y, int z) {
+                                   const bool inside = y > 1 && y < 14 && z > 1 && z < 14;
+                                   const bool empty = x > 2 && x < 6 && y > 5 && y < 9 && z > 5 && z < 9;
+                                   return inside && ((x > 0 && x < 8) || (x > 10 && x < 14)) && !empty;
+                               }),
+                               "became"));
 }

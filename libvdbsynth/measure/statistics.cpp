@@ -31,9 +31,26 @@ void appendSums(std::vector<double>& to, const std::vector<double>& shares) {
     for (double share : shares) to.push_back(sum += share);
 }
 
+// True if the outermost voxels of the counted box are all void: what is inside is whole, whatever continues
+// beyond.
+bool isClear(const MeasuredModel& model) {
+    const IndexBox& box = model.counted;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const bool low : {true, false}) {
+            IndexBox layer = box;
+            (low ? layer.max : layer.min)[axis] = (low ? box.min : box.max)[axis];
+            if (model.solid.window(layer).count() > 0) return false;
+        }
+    return true;
+}
+
+bool isWholeModel(const MeasuredModel& model) {
+    return model.beyond == Beyond::Void || isClear(model);
+}
+
 // A whole object is counted in full; its sub-volumes like those of a texture.
 bool isWhole(const MeasuredModel& model, const IndexBox& box) {
-    return model.beyond == Beyond::Void && box == model.counted;
+    return box == model.counted && isWholeModel(model);
 }
 
 void addSurface(const MeasuredModel& model, const IndexBox& box, std::vector<Statistic>& all) {
@@ -108,8 +125,8 @@ std::vector<Statistic> measureStatistics(const MeasuredModel& model, const Index
     all.push_back(number("volume fraction", 0, double(solid.count()) / solid.volume()));
     addSurface(model, box, all);
     const double corners = whole ? double(box.volume()) : eulerVolume(box.size(), Beyond::Unknown);
-    const double euler =
-        eulerCharacteristic(whole ? model.solid : solid, whole ? Beyond::Void : Beyond::Unknown);
+    const double euler = eulerCharacteristic(model.beyond == Beyond::Void && whole ? model.solid : solid,
+                                             whole ? Beyond::Void : Beyond::Unknown);
     all.push_back(number("Euler characteristic per volume", -3, per(euler, corners)));
     addThickness(model.thickness, box, reach, "local thickness", all);
     addThickness(model.pores, box, reach, "pore size", all);
@@ -128,8 +145,8 @@ std::vector<Statistic> measureStatistics(const MeasuredModel& model, const Index
 }
 
 Topology measureTopology(const MeasuredModel& model, const RunContext& ctx) {
-    const bool whole = model.beyond == Beyond::Void;
-    const Occupancy solid = whole ? model.solid : model.solid.window(model.counted);
+    const bool whole = isWholeModel(model);
+    const Occupancy solid = model.beyond == Beyond::Void ? model.solid : model.solid.window(model.counted);
     Topology topology;
     parallelFor(ctx, 2, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
@@ -139,9 +156,9 @@ Topology measureTopology(const MeasuredModel& model, const RunContext& ctx) {
                 topology.empty = findComponents(solid.complement(), Neighbours::Faces);
     });
     topology.enclosed = double(topology.empty.interior.size());
-    const double euler = eulerCharacteristic(solid, model.beyond);
+    const double euler = eulerCharacteristic(solid, whole ? Beyond::Void : Beyond::Unknown);
     topology.eulerCharacteristic =
-        whole ? euler : per(euler, eulerVolume(solid.size(), model.beyond)) * solid.volume();
+        whole ? euler : per(euler, eulerVolume(solid.size(), Beyond::Unknown)) * solid.volume();
     if (whole) topology.tunnels = double(topology.solid.sizes.size()) + topology.enclosed - euler;
     return topology;
 }

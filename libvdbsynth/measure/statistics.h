@@ -30,7 +30,8 @@ struct MeasuredModel {
 void prepare(MeasuredModel& model, int coarsening, const RunContext& ctx = {});
 
 /// All statistics of a box of a model whose mean does not depend on the box's size, in a fixed order. For a
-/// whole object, Euler characteristic and surface are totals over the box's volume.
+/// whole object, and for a solid that no voxel at the sides of its domain belongs to, Euler characteristic
+/// and surface are totals over the box's volume.
 /// @param box    within model.counted, sides at least 4
 /// @param reach  [voxels] of curves, less than every side
 /// @par Repeats same bits for any number of threads

@@ -64,6 +64,35 @@ Verdict judge(const std::vector<Statistic>& parts, const Statistic& result) {
     return verdict;
 }
 
+double fractionError(const std::vector<double>& radial, double fraction, double volume) {
+    constexpr double kPi = 3.14159265358979323846;
+    const double square = fraction * fraction;
+    double sum = 0;
+    for (std::size_t r = 0; r < radial.size() && radial[r] > square; ++r)
+        sum += (r == 0 ? 1 : 4 * kPi * (double(r) * double(r) + 1.0 / 12)) * (radial[r] - square);
+    return volume > 0 ? std::sqrt(sum / volume) : 0;
+}
+
+Verdict judgeFraction(const std::vector<Statistic>& exemplar, double volume,
+                      const std::vector<Statistic>& result) {
+    const auto valuesOf = [](const std::vector<Statistic>& all, const std::string& name) {
+        for (const Statistic& one : all)
+            if (one.name == name) return one.values;
+        return std::vector<double>{};
+    };
+    Verdict verdict;
+    verdict.name = "volume fraction, standard error";
+    const std::vector<double> own = valuesOf(exemplar, "volume fraction"),
+                              other = valuesOf(result, "volume fraction"),
+                              radial = valuesOf(exemplar, "two-point correlation");
+    if (own.empty() || other.empty()) return verdict;
+    verdict.mean = own.front();
+    verdict.sigma = fractionError(radial, own.front(), volume);
+    verdict.quartile = 2 * verdict.sigma;
+    verdict.distance = std::abs(other.front() - own.front());
+    return verdict;
+}
+
 const Verdict* findVerdict(const std::vector<Verdict>& verdicts, const std::string& name) {
     for (const Verdict& verdict : verdicts)
         if (verdict.name == name) return &verdict;

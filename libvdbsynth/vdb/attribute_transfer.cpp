@@ -50,8 +50,8 @@ Value rotatedValue(const Value& value, const Affine& matrix) {
     }
 }
 
-// Offsets of the voxels within two, nearest first.
-std::vector<openvdb::Coord> nearSteps() {
+// Offsets of the voxels within a distance, nearest first.
+std::vector<openvdb::Coord> stepsWithin(int distance) {
     std::vector<openvdb::Coord> steps;
     forEachVoxel(IndexBox::cube({-2, -2, -2}, 5), [&](const Index3& p) { steps.push_back(toCoord(p)); });
     const auto squared = [](const openvdb::Coord& c) {
@@ -60,17 +60,18 @@ std::vector<openvdb::Coord> nearSteps() {
     std::stable_sort(steps.begin(), steps.end(), [&](const openvdb::Coord& a, const openvdb::Coord& b) {
         return squared(a) < squared(b);
     });
-    steps.erase(
-        std::remove_if(steps.begin(), steps.end(), [&](const openvdb::Coord& c) { return squared(c) > 4; }),
-        steps.end());
+    steps.erase(std::remove_if(steps.begin(), steps.end(),
+                               [&](const openvdb::Coord& c) { return squared(c) > distance * distance; }),
+                steps.end());
     return steps;
 }
 
-// The value of the active voxel nearest to a position, within two of it.
+// The value of the active voxel nearest to a position, within a distance of it.
 template <typename Accessor, typename Value>
 bool readNear(const Accessor& from, const openvdb::math::Transform& transform, const openvdb::Vec3d& world,
-              Value& value) {
-    static const std::vector<openvdb::Coord> steps = nearSteps();
+              Value& value, int within = 2) {
+    static const std::vector<openvdb::Coord> all[3] = {stepsWithin(0), stepsWithin(1), stepsWithin(2)};
+    const std::vector<openvdb::Coord>& steps = all[within];
     const openvdb::Coord middle = openvdb::Coord::round(transform.worldToIndex(world));
     return std::any_of(steps.begin(), steps.end(),
                        [&](const openvdb::Coord& step) { return from.probeValue(middle + step, value); });
@@ -79,7 +80,7 @@ bool readNear(const Accessor& from, const openvdb::math::Transform& transform, c
 // @param into  a grid of the same name and kind to write into, or null
 template <typename Grid>
 GridPtr readThrough(const Grid& grid, const std::vector<Link>& links, const openvdb::FloatGrid& result,
-                    const GridPtr& into) {
+                    const GridPtr& into, int within) {
     auto made = openvdb::gridPtrCast<Grid>(into);
     if (!made) {
         made = Grid::create(grid.background());
@@ -94,7 +95,7 @@ GridPtr readThrough(const Grid& grid, const std::vector<Link>& links, const open
     auto to = made->getAccessor();
     typename Grid::ValueType value;
     for (const Link& link : links) {
-        if (!readNear(from, grid.transform(), link.from, value)) continue;
+        if (!readNear(from, grid.transform(), link.from, value, within)) continue;
         const bool rotated = directional && rotates(link.rotation);
         if (rotated && rotates(link.rotation - rotation)) {
             rotation = link.rotation;
@@ -183,7 +184,9 @@ std::vector<GridPtr> transferAttributes(const SourceMap& map, const std::vector<
     if (!any) return {};
     std::vector<GridPtr> attributes =
         transferToVoxels(mappedVoxels(map, result, ctx), exemplars, result, {}, ctx);
-    if (values == AttributeValues::Copied || map.method == MapMethod::Analogy) return attributes;
+    if (map.method == MapMethod::Analogy) return attributes;
+    attributes = transferBeyondBand(map, exemplars, result, std::move(attributes), ctx);
+    if (values == AttributeValues::Copied) return attributes;
     Stage stage(ctx, "blending attributes", attributes.size());
     for (const GridPtr& grid : attributes) {
         grid->apply<RealGrids>([&](auto& typed) { blendThrough(map, exemplars, typed, ctx); });
@@ -195,7 +198,7 @@ std::vector<GridPtr> transferAttributes(const SourceMap& map, const std::vector<
 std::vector<GridPtr> transferToVoxels(const std::vector<MappedVoxel>& voxels,
                                       const std::vector<const LevelSet*>& exemplars,
                                       const openvdb::FloatGrid& result, std::vector<GridPtr> into,
-                                      const RunContext& ctx) {
+                                      const RunContext& ctx, int within) {
     std::vector<GridPtr> attributes = std::move(into);
     if (voxels.empty()) return attributes;
     const std::vector<std::vector<Link>> links = linksOf(voxels, exemplars);
@@ -210,7 +213,7 @@ std::vector<GridPtr> transferToVoxels(const std::vector<MappedVoxel>& voxels,
             GridPtr made;
             const bool read =
                 grid->transform().isLinear() && grid->apply<AttributeGrids>([&](const auto& typed) {
-                    made = readThrough(typed, links[e], result, existing);
+                    made = readThrough(typed, links[e], result, existing, within);
                 });
             if (!read)
                 message(ctx, MessageLevel::Warning,

@@ -265,6 +265,20 @@ std::vector<MappedVoxel> mappedVoxels(const SourceMap& map, const openvdb::Float
     return voxels;
 }
 
+std::vector<MappedVoxel> mappedVoxelsIn(const SourceMap& map, const IndexBox& box,
+                                        const openvdb::FloatGrid& except, const RunContext& ctx) {
+    if (map.method == MapMethod::Analogy) throw Error(ErrorCode::InvalidOption, "a map without blocks");
+    std::vector<MappedVoxel> voxels;
+    const auto active = except.getConstAccessor();
+    forEachVoxel(box, [&](const Index3& voxel) {
+        if (covers(map, voxel) && !active.isValueOn(toCoord(voxel))) voxels.push_back({voxel, {}});
+    });
+    parallelFor(ctx, voxels.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) voxels[i].from = strongestSource(map, voxels[i].to);
+    });
+    return voxels;
+}
+
 std::vector<GridPtr> sourceMapGrids(const SourceMap& map, const openvdb::FloatGrid& result,
                                     const RunContext& ctx, MapTypes types) {
     Stage stage(ctx, "source map", 1);

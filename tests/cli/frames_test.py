@@ -71,7 +71,7 @@ class Frames(CliTest):
 
     def test_refused(self):
         self.fails(2, "every frame would replace it", "convert", "b.####.off", "-o", "f.vdb", "--frames", "8-10")
-        self.fails(2, "no file names frames", "convert", "b.0008.off", "-o", "f.vdb", "--frames", "8-10")
+        self.fails(2, "no file names frames", "convert", "b.0008.off", "-o", "f.vdb", "--frames", "8")
         self.fails(2, "numbers of frames", "convert", "b.####.off", "-o", "f.####.vdb", "--frames", "10-8")
         self.fails(2, "add --frames", "convert", "b.####.off", "-o", "f.####.vdb")
         self.fails(2, "is the file of the input", "convert", "b.####.off", "-o", "b.####.off", "--frames", "8-10")

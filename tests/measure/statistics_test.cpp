@@ -130,6 +130,27 @@ TEST_CASE("measureStatistics: of a whole object totals over the box's volume", "
     CHECK(measureTopology(preparedModel(ring, Beyond::Void, 2)).tunnels == 1);
 }
 
+TEST_CASE("measureStatistics: a ball that no side of its volume cuts is whole", "[measure][oracle]") {
+    constexpr double kRadius = 15, kPi = 3.14159265358979;
+    const auto ball = field({64, 60, 56}, [](const Vec3d& p) {
+        return length(p - Vec3d{30, 29, 28}) - kRadius;
+    });
+    const MeasuredModel model = preparedModel(ball, Beyond::Unknown);
+    const std::vector<Statistic> all = measureStatistics(model, model.counted, 8);
+    const double volume = 64.0 * 60 * 56;
+    CHECK(valueOf(all, "surface area per volume") * volume ==
+          Approx(4 * kPi * kRadius * kRadius).epsilon(0.01));
+    CHECK(valueOf(all, "Euler characteristic per volume") * volume == Approx(1).epsilon(1e-9));
+    const Topology topology = measureTopology(model);
+    CHECK(topology.eulerCharacteristic == 1);
+    CHECK(topology.tunnels == 0);
+    // One that a side cuts is a part of what continues.
+    const auto cut = field({64, 60, 56}, [](const Vec3d& p) {
+        return length(p - Vec3d{8, 29, 28}) - kRadius;
+    });
+    CHECK(measureTopology(preparedModel(cut, Beyond::Unknown)).eulerCharacteristic != 1);
+}
+
 TEST_CASE("measureStatistics: means over any partition's parts, the thinnest too",
           "[measure][property][degenerate]") {
     const MeasuredModel model = preparedModel(slabs(), Beyond::Unknown);

@@ -2,7 +2,12 @@
 
 #include <catch2/catch.hpp>
 
+#include "libvdbsynth/base/random.h"
+#include "libvdbsynth/grid/occupancy.h"
+#include "libvdbsynth/measure/correlation.h"
 #include "tests/support/makers.h"
+
+#include <cmath>
 
 using namespace vdbsynth;
 
@@ -58,4 +63,50 @@ TEST_CASE("Yardstick: the ratio has at least the shift below it", "[measure][ora
     CHECK(Yardstick{"y", 2, 4, 1}.ratio() == Approx(0.5));
     CHECK(Yardstick{"y", 2, 1, 4}.ratio() == Approx(0.5));
     CHECK(Yardstick{"y", 0, 0, 0}.ratio() == 0);
+}
+
+TEST_CASE("fractionError: of independent voxels the binomial's, of blocks the blocks'", "[measure][oracle]") {
+    // S2 is phi at 0 and phi^2 from 1 on: only the voxel itself counts.
+    CHECK(fractionError({0.25, 0.0625, 0.0625}, 0.25, 10000) == Approx(std::sqrt(0.25 * 0.75 / 10000)));
+    CHECK(fractionError({0.25, 0.0625}, 0.25, 0) == 0);
+    CHECK(fractionError({1, 1, 1}, 1, 1000) == 0);
+    // Voxels in cubes of 4, each solid or void as a whole by chance: 16^3 independent cubes.
+    constexpr int kCubes = 16, kSide = 4, kReach = 10;
+    double spread = 0, predicted = 0;
+    constexpr int kSamples = 60;
+    for (int sample = 0; sample < kSamples; ++sample) {
+        std::vector<char> solid(std::size_t(kCubes * kCubes * kCubes));
+        double count = 0;
+        for (std::size_t i = 0; i < solid.size(); ++i) {
+            Random random(std::uint64_t(sample), i);
+            solid[i] = random.uniform(0, 1) < 0.3;
+            count += solid[i];
+        }
+        const double fraction = count / double(solid.size());
+        spread += (fraction - 0.3) * (fraction - 0.3) / kSamples;
+        const Occupancy voxels = Occupancy::fromField(
+            test::fieldFrom({kCubes * kSide, kCubes * kSide, kCubes * kSide}, [&](const Index3& p) {
+                const int cube = (p.x / kSide * kCubes + p.y / kSide) * kCubes + p.z / kSide;
+                return solid[std::size_t(cube)] ? -1.f : 1.f;
+            }));
+        if (sample % 20 == 0)
+            predicted +=
+                fractionError(twoPointCorrelation(voxels, kReach).radial, fraction, double(voxels.volume())) /
+                3;
+    }
+    CHECK(predicted == Approx(std::sqrt(spread)).epsilon(0.35));
+}
+
+TEST_CASE("judgeFraction: within two standard errors of the exemplar's own", "[measure][oracle]") {
+    const auto all = [](double fraction) {
+        return std::vector<Statistic>{{"volume fraction", 0, false, {fraction}},
+                                      {"two-point correlation", 0, true, {0.25, 0.0625}}};
+    };
+    const double error = std::sqrt(0.25 * 0.75 / 1e4);
+    const Verdict near = judgeFraction(all(0.25), 1e4, all(0.25 + 1.9 * error));
+    CHECK(near.name == "volume fraction, standard error");
+    CHECK(near.sigma == Approx(error));
+    CHECK(near.passes());
+    CHECK_FALSE(judgeFraction(all(0.25), 1e4, all(0.25 + 2.1 * error)).passes());
+    CHECK(judgeFraction({}, 1, {}).passes());
 }

@@ -2,6 +2,7 @@
 #include "tools/vdb_synth/command.h"
 #include "tools/vdb_synth/direction_option.h"
 #include "tools/vdb_synth/map_place.h"
+#include "tools/vdb_synth/options.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
@@ -81,6 +82,7 @@ Models loadModels(Run& run) {
         own.resolution = 0;
         models.pairs.push_back(run.load(inputs[i + 1], own));
     }
+    options.carry = true;
     // In the rest pose, if one is given: its mesh says where a place of B is.
     const bool posed = run.arguments.has("rest");
     options.keepSource = posed;
@@ -236,7 +238,7 @@ void analogyInPose(Run& run, const AnalogyOptions& options, const std::vector<st
     result.model = poseModel(atRest, made->target, posed, pose, run.context);
     ModelOutputOptions outputs;
     outputs.adaptivity = run.arguments.real("adaptivity");
-    outputs.metadata = run.metadata();
+    run.describeOutputs(outputs);
     writeModel(result.model, paths, outputs, run.outputs(), run.context);
     report(run, result);
     run.finish();

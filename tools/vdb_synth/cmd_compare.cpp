@@ -38,6 +38,7 @@ void compare(Run& run) {
     CompareOptions options;
     if (run.arguments.has("stationary")) options.stationary = run.arguments.axes("stationary");
     if (run.arguments.has("process")) readProcess(run.arguments.text("process"), options.process.emplace());
+    options.full = run.arguments.has("full");
     options.fresh = run.arguments.whole("fresh");
     if (run.arguments.has("relief-radius")) options.reliefRadius = run.arguments.real("relief-radius");
     if (run.arguments.has("fresh") && !options.process)

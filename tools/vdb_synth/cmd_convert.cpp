@@ -56,7 +56,7 @@ void convert(Run& run) {
     const LevelSet model =
         withHalfWidth(run.load(run.arguments.inputs[0], modelOptions), modelOptions.halfWidth, run.context);
     noteUnusedHeight(run, paths);
-    outputs.metadata = run.metadata();
+    run.describeOutputs(outputs);
     writeModel(model, paths, outputs, run.outputs(), run.context);
     run.describe(model);
     run.finish();

@@ -23,7 +23,7 @@ void crop(Run& run) {
         withHalfWidth(cropModel(run.load(run.arguments.inputs[0], options), box, run.context),
                       options.halfWidth, run.context);
     ModelOutputOptions outputs;
-    outputs.metadata = run.metadata();
+    run.describeOutputs(outputs);
     writeModel(result, paths, outputs, run.outputs(), run.context);
     run.describe(result);
     run.finish();

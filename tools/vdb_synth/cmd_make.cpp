@@ -35,7 +35,7 @@ void makeTwo(Run& run, const MakeOptions& options) {
     const double halfWidth = run.arguments.real("half-width");
     const ModelPair pair = makePair(options, run.context);
     ModelOutputOptions outputs;
-    outputs.metadata = run.metadata();
+    run.describeOutputs(outputs);
     outputs.metadata.emplace_back("vdbsynth:kind", options.exemplar.kind);
     writeModel(withHalfWidth(pair.plain, halfWidth, run.context), {paths[0]}, outputs, run.outputs(),
                run.context);
@@ -70,7 +70,7 @@ void makeLevelSet(Run& run, const MakeOptions& options, const std::vector<std::s
     const LevelSet model =
         withHalfWidth(makeModel(options, run.context), run.arguments.real("half-width"), run.context);
     ModelOutputOptions outputs;
-    outputs.metadata = run.metadata();
+    run.describeOutputs(outputs);
     outputs.metadata.emplace_back("vdbsynth:kind", options.exemplar.kind);
     writeModel(model, paths, outputs, run.outputs(), run.context);
     run.describe(model);

@@ -78,7 +78,7 @@ void writePatched(Run& run, const PatchSource& source, const LevelSet* model, do
                     " of the points nearest to it; without --with-model there is none of it");
     ModelOutputOptions outputs;
     outputs.adaptivity = arguments.real("adaptivity");
-    outputs.metadata = run.metadata();
+    run.describeOutputs(outputs);
     writeModel(made, models, outputs, run.outputs(), run.context);
     run.describe(made);
 }

@@ -278,7 +278,7 @@ void relief(Run& run) {
     ModelOutputOptions outputs;
     outputs.adaptivity = arguments.real("adaptivity");
     outputs.extraGrids = result.sources;
-    outputs.metadata = run.metadata();
+    run.describeOutputs(outputs);
     if (!paths.empty()) writeModel(result.model, paths, outputs, run.outputs(), run.context);
     bake(run, baked, result);
     report(run, result, options);

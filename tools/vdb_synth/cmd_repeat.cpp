@@ -150,7 +150,7 @@ void repeat(Run& run) {
     std::vector<const LevelSet*> pointers;
     for (const LevelSet& model : models) pointers.push_back(&model);
     const LevelSet result = repeatMap(map, pointers, options, run.context);
-    outputs.metadata = run.metadata();
+    run.describeOutputs(outputs);
     writeModel(result, paths, outputs, run.outputs(), run.context);
     run.describe(result);
     run.finish();

@@ -2,6 +2,7 @@
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/io/output_set.h"
 #include "libvdbsynth/pipeline/convert/model.h"
+#include "libvdbsynth/pipeline/convert/outputs.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "tools/vdb_synth/frames.h"
 #include "tools/vdb_synth/option_set.h"
@@ -71,6 +72,8 @@ public:
     void noteInput(const std::string& path);
     /// File metadata of every VDB output.
     VdbMetadata metadata() const;
+    /// Metadata, name and precision of .vdb outputs; after all inputs are read.
+    void describeOutputs(ModelOutputOptions& outputs) const;
     /// Adds a number or text to the report's "counts".
     void count(const std::string& name, const nlohmann::json& value);
     /// Adds a resulting level set to the report: its size to "counts", its band to "quality".

@@ -80,7 +80,7 @@ void appendCounts(const Comparison& comparison, std::size_t i, std::string& text
     for (const ModelStatistics* model : {&a, &b})
         if (model->thicknessCoarsening > 1)
             text += model->name + ": thickness was measured at a spacing of " +
-                    std::to_string(model->thicknessCoarsening) + " voxels\n";
+                    std::to_string(model->thicknessCoarsening) + " voxels; --full measures it on all\n";
 }
 
 // Heights in world units, so that models of different voxels compare.

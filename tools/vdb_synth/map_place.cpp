@@ -51,7 +51,7 @@ MapPlace mapPlaceOf(const Arguments& arguments, const std::vector<std::string>& 
 
 void writeWithMap(Run& run, const LevelSet& model, const SourceMap& map, const MapPlace& place,
                   const std::vector<std::string>& paths, ModelOutputOptions outputs) {
-    outputs.metadata = run.metadata();
+    run.describeOutputs(outputs);
     std::vector<GridPtr> grids;
     if (!place.path.empty()) {
         const MapTypes types =

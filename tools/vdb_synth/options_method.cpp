@@ -306,6 +306,10 @@ std::vector<Option> matchTable() {
             .says("process that the reference is a sample of, such as \"make balls --feature 12\": compare "
                   "with fresh samples of it")
             .takenBy({"compare"}),
+        flag("full")
+            .says("measure thickness and pores on every voxel, of large models too (slower)")
+            .otherwiseIs("over 10 million voxels on every second one, of all models alike")
+            .takenBy({"compare"}),
         whole("fresh", "N", 2, 100)
             .says("number of fresh samples")
             .initially("10")

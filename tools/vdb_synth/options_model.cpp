@@ -112,6 +112,16 @@ std::vector<Option> inputTable() {
                       "relief-extract", "patch"})
             .butFor("repeat",
                     [](Option& o) { o.initially("").otherwiseIs("that of the run that wrote the map"); }),
+        option(Kind::Text, "name", "NAME")
+            .in(Group::Output)
+            .says("name of the level set's grid in .vdb outputs")
+            .otherwiseIs("surface")
+            .takenBy({"convert", "crop", "synth", "analogy", "repeat", "make", "relief"}),
+        flag("half")
+            .in(Group::Output)
+            .says(
+                "write the level set and the grids that come along at half precision; source maps stay exact")
+            .takenBy({"convert", "crop", "synth", "analogy", "repeat", "make", "relief"}),
     };
 }
 

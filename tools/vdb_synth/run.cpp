@@ -225,6 +225,12 @@ VdbMetadata Run::metadata() const {
             {"vdbsynth:inputs", inputs.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)}};
 }
 
+void Run::describeOutputs(ModelOutputOptions& outputs) const {
+    outputs.metadata = metadata();
+    outputs.name = arguments.text("name");
+    outputs.half = arguments.has("half");
+}
+
 void Run::count(const std::string& name, const nlohmann::json& value) {
     mImpl->counts[name] = value;
 }

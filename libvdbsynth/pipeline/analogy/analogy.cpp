@@ -129,8 +129,7 @@ AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const Leve
         textured.push_back(pairs[p].textured);
     }
     result.model = analogyThroughMap(map, 1, samples, *plain, target, result.reach, ctx);
-    result.model.attributes =
-        transferAttributes(map, textured, *result.model.grid, AttributeValues::Copied, ctx);
+    result.model.attributes = analogyAttributes(map, textured, *plain, target, *result.model.grid, ctx);
     if (options.keepDirections) result.directions = directionGrid(frames, place, box);
     result.levels = std::move(made.levels);
     for (const Vec3f& p : frames.directions().singularities)

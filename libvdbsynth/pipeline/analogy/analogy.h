@@ -71,9 +71,10 @@ struct AnalogyResult {
 };
 
 /// plain : textured = target : result (analogy/volume_analogy.h), rebuilt to a valid narrow band; attributes
-/// of the textured models are transferred. Faces of recorded domains that a solid touches are cuts: the pair
-/// continues beyond them and nothing is copied from there, and the target is capped there again. Elsewhere
-/// the result may extend beyond its domain.
+/// of the textured models are transferred, the target's own grids stay
+/// as they are, under those of the same name and kind. Faces of recorded domains that a solid touches are
+/// cuts: the pair continues beyond them and nothing is copied from there, and the target is capped there
+/// again. Elsewhere the result may extend beyond its domain.
 /// @throw Error as validate; ShapeMismatch (the models of a pair do not overlap), Unusable (a pair that is
 /// too small, a texture that reaches too far from the surface, no direction possible),
 /// EmptyInput, Memory, Cancelled

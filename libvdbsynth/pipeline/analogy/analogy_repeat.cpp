@@ -173,7 +173,7 @@ LevelSet repeatAnalogy(const SourceMap& map, int factor, const std::vector<const
     }
     const BrickField plain = gatherWideBand(*target.grid, scaled.targetBox, map.cut, scaled.band, ctx);
     LevelSet model = analogyThroughMap(map, factor, samples, plain, target, 0, ctx);
-    model.attributes = transferAttributes(scaled, textured, *model.grid, AttributeValues::Copied, ctx);
+    model.attributes = analogyAttributes(scaled, textured, plain, target, *model.grid, ctx);
     return model;
 }
 

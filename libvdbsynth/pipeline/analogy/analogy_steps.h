@@ -52,6 +52,13 @@ LevelSet analogyThroughMap(const SourceMap& map, int factor, const std::vector<E
                            const BrickField& plain, const LevelSet& target, float reach,
                            const RunContext& ctx);
 
+/// The grids of a result: those of the textured models through the map, but where a mask keeps the target,
+/// over the target's own.
+/// @param map    at the result's resolution   @param plain  as for analogyThroughMap
+std::vector<GridPtr> analogyAttributes(const SourceMap& map, const std::vector<const LevelSet*>& textured,
+                                       const BrickField& plain, const LevelSet& target,
+                                       const openvdb::FloatGrid& result, const RunContext& ctx);
+
 /// repeatMap for an analogy.
 LevelSet repeatAnalogy(const SourceMap& map, int factor, const std::vector<const LevelSet*>& textured,
                        const LevelSet& target, const RunContext& ctx);

@@ -213,7 +213,7 @@ namespace {
 Comparison compared(const CompareInput& reference, const std::vector<CompareInput>& others,
                     const CompareOptions& options, const RunContext& ctx) {
     Comparison result;
-    const int coarsening = thicknessCoarsening(reference, others);
+    const int coarsening = options.full ? 1 : thicknessCoarsening(reference, others);
     const PreparedModel to = prepareModel(reference.name, reference.model, coarsening, ctx);
     result.stationary = options.stationary.value_or(cutAxes(to.model));
     const std::vector<IndexBox> parts = subVolumes(to.model.counted, result.stationary, kShortestPart);
@@ -238,6 +238,9 @@ Comparison compared(const CompareInput& reference, const std::vector<CompareInpu
         if (!parts.empty())
             result.distances.back().verdicts =
                 verdictsOn(spread, from, result.distances.back(), result.reach, ctx);
+        if (!parts.empty())
+            result.distances.back().verdicts.push_back(judgeFraction(
+                result.reference.statistics, double(to.model.counted.volume()), statistics.statistics));
         projections.push_back(std::move(from.projections));
     }
     result.reference.islands = countIslands(to.model, result.reference.topology, result.islandLimit);

@@ -20,6 +20,9 @@ struct CompareOptions {
     /// The process that the reference is a sample of: gives the yardstick. Its size is the reference's.
     std::optional<ExemplarOptions> process;
     int fresh = 10;  ///< fresh samples of it, 2..100
+    /// Thickness and pores are measured on every voxel; else of models over 10 million voxels on every second
+    /// one (of both, if either is that large: ModelStatistics::thicknessCoarsening).
+    bool full = false;
     /// [world] radius of the base from which relief is measured (pipeline/relief/relief_extract.h), the same
     /// for all models; empty: relief is not measured.
     std::optional<double> reliefRadius;

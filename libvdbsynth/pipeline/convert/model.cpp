@@ -219,10 +219,12 @@ LevelSet loaded(const std::string& path, const ModelOptions& options, const RunC
     if (options.unitScale != 1) model.grid = inUnit(*model.grid, options.unitScale);
     model = atVoxelSize(path, model, options, ctx);
     if (options.carry) {
-        // All except the one that became the model.
+        // All except the one that became the model; fog that a level set was made of comes along as fog.
         const GridPtr used = pickedGrid(path, grids, read);
+        const bool fog = options.iso && used->getGridClass() != openvdb::GRID_LEVEL_SET &&
+                         used->getName() != kSurfaceName;
         std::copy_if(grids.begin(), grids.end(), std::back_inserter(model.attributes),
-                     [&](const GridPtr& grid) { return grid != used; });
+                     [&](const GridPtr& grid) { return fog || grid != used; });
     }
     return model;
 }

@@ -99,11 +99,25 @@ void removeSliversOfMerging(const LevelSet& model, Mesh& mesh, const RunContext&
                 std::to_string(mesh.triangles.size()) + " triangles");
 }
 
+// The same tree under another name or precision.
+GridPtr asWritten(const GridPtr& grid, const std::string& name, bool half) {
+    if (name.empty() && !half) return grid;
+    const GridPtr written = grid->copyGrid();
+    if (!name.empty()) written->setName(name);
+    if (half) written->setSaveFloatAsHalf(true);
+    return written;
+}
+
 void writeOne(const LevelSet& model, const std::string& path, const std::string& temporary,
               const ModelOutputOptions& options, std::optional<Mesh>& mesh, const RunContext& ctx) {
     if (extensionOf(path) == "vdb") {
-        std::vector<GridPtr> grids{model.grid};
-        grids.insert(grids.end(), model.attributes.begin(), model.attributes.end());
+        for (const GridPtr& grid : model.attributes)
+            if (grid->getName() == options.name)
+                throw Error(
+                    ErrorCode::InvalidOption,
+                    "`name` " + options.name + ": a grid of that name comes along; give another name");
+        std::vector<GridPtr> grids{asWritten(model.grid, options.name, options.half)};
+        for (const GridPtr& grid : model.attributes) grids.push_back(asWritten(grid, "", options.half));
         grids.insert(grids.end(), options.extraGrids.begin(), options.extraGrids.end());
         writeVdb(temporary, grids, options.metadata);
         return;

@@ -18,7 +18,9 @@ struct ModelOutputOptions {
     HeightPlane plane = HeightPlane::XY;  ///< of height images
     double height = 0;                    ///< [world] height of white in a .png; 0: that of the highest point
     std::vector<GridPtr> extraGrids;      ///< written next to `surface` into .vdb outputs
-    VdbMetadata metadata;                 ///< of .vdb outputs
+    std::string name;                     ///< of the level set's grid in .vdb outputs; empty: surface
+    bool half = false;     ///< .vdb outputs hold the floats of the level set and of its attributes as halves
+    VdbMetadata metadata;  ///< of .vdb outputs
 };
 
 /// @throw Error InvalidOption (a field out of its range, both `sharp` and `adaptivity`, null grids)

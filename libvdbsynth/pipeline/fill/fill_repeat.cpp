@@ -135,6 +135,7 @@ LevelSet fillThroughMap(const SourceMap& map, const Surroundings& around, const 
         if (!isOfSourceMap(grid->getName())) kept.push_back(grid->deepCopyGrid());
     model.attributes =
         transferToVoxels(mappedVoxels(map, *model.grid, ctx), {&from}, *model.grid, std::move(kept), ctx);
+    model.attributes = transferBeyondBand(map, {&from}, *model.grid, std::move(model.attributes), ctx);
     if (!partial.domainRecorded) model.domain = solidBox(*model.grid, "the filled model");
     stampLevelSet(model);
     return model;

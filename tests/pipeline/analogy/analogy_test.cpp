@@ -4,6 +4,8 @@
 #include <openvdb/tools/LevelSetSphere.h>
 #include <catch2/catch.hpp>
 
+#include <cmath>
+
 #include "libvdbsynth/grid/occupancy.h"
 #include "libvdbsynth/pipeline/make/make.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
@@ -237,4 +239,34 @@ TEST_CASE("makeAnalogyModel: what is wrong with a direction names the field that
     CHECK(test::contains(said(nowhere, nullptr), "the target: `direction` gives no direction"));
     CHECK(test::contains(said(nullptr, nowhere), "the pair: `exemplarDirection` gives no direction"));
     CHECK(test::contains(said(nullptr, openvdb::Int32Grid::create()), "`exemplarDirection`: grid"));
+}
+
+TEST_CASE("makeAnalogyModel: the target's own grids follow, extended to the new surface, and repeat",
+          "[pipeline][property]") {
+    const ModelPair pair = pairOf("dilation");
+    LevelSet target = tori();
+    const auto density = openvdb::FloatGrid::create(0.f), heat = openvdb::FloatGrid::create(0.f);
+    density->setName("density");
+    heat->setName("heat");
+    // One fills the solid, the other is on the band.
+    for (auto value = target.grid->cbeginValueAll(); value; ++value)
+        if (*value < 0 && value.isVoxelValue()) density->tree().setValueOn(value.getCoord(), 2.f);
+    for (auto value = target.grid->cbeginValueOn(); value; ++value)
+        heat->tree().setValueOn(value.getCoord(), float(value.getCoord().x()));
+    density->tree().addTile(1, {800, 0, 0}, 1.f, true);
+    target.attributes = {density, heat};
+    const AnalogyResult result = applied(pair, target);
+    REQUIRE(result.model.attributes.size() == 2);
+    for (const GridPtr& grid : result.model.attributes) {
+        if (grid->getName() == "density") {
+            CHECK(grid->activeVoxelCount() == density->activeVoxelCount());
+            continue;
+        }
+        REQUIRE(grid->getName() == "heat");
+        const auto extended = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
+        // The dilated surface is over voxels where the target had no band.
+        CHECK(double(extended->activeVoxelCount()) > 0.98 * double(result.model.grid->activeVoxelCount()));
+        for (auto value = extended->cbeginValueOn(); value; ++value)
+            REQUIRE(std::abs(*value - float(value.getCoord().x())) < 9);
+    }
 }

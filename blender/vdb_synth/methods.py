@@ -77,7 +77,7 @@ def options_of(one, values, seed):
         if choice.kind == "flag":
             if value:
                 options[choice.name] = True
-        elif value not in ("", 0, 0.0, None):
+        elif value not in ("", "AUTO", 0, 0.0, None):
             options[choice.name] = round(value, 9) if choice.kind == "real" else value
     options["seed"] = seed
     return options

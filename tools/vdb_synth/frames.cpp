@@ -4,6 +4,7 @@
 #include "tools/vdb_synth/options.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 
 namespace vdbsynth::cli {
@@ -25,6 +26,8 @@ FramePlace placeIn(const std::string& path) {
     for (std::size_t at = path.find('%'); at != std::string::npos; at = path.find('%', at + 1)) {
         const std::size_t end = path.find_first_not_of("0123456789", at + 1);
         if (end == std::string::npos || path[end] != 'd' || end - at > 3) continue;
+        if (end + 1 < path.size() && std::isalnum(static_cast<unsigned char>(path[end + 1])))
+            continue;  // "100%done"
         return {at, end + 1 - at, std::max(1, std::atoi(path.c_str() + at + 1))};
     }
     return {};

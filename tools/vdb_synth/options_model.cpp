@@ -119,6 +119,7 @@ std::vector<Option> inputTable() {
             .takenBy({"convert", "crop", "synth", "analogy", "repeat", "make", "relief"}),
         flag("half")
             .in(Group::Output)
+            .sets({"halfFloats"})
             .says(
                 "write the level set and the grids that come along at half precision; source maps stay exact")
             .takenBy({"convert", "crop", "synth", "analogy", "repeat", "make", "relief"}),

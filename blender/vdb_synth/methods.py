@@ -39,7 +39,7 @@ METHODS = [
     Method("analogy", "Analogy", "The texture that A2 adds to A, on the selected model", ["plain", "textured", "object"], [
         RESOLUTION, DIRECTION, SCALE,
         Choice("strength", "real", 1.0, "blend from the selected model to the result", 0.0, 1.0),
-        Choice("exemplar-resolution", "whole", 128, "voxels along the longest side of a mesh A", 8, 2000),
+        Choice("exemplar-resolution", "whole", 0, "voxels along the longest side of A; 0: the program's choice", 0, 2000),
     ]),
     Method("patch", "Patches", "A larger sheet of the selected geometry texture", ["object"], [
         Choice("size", "text", "2x,2x", "size of the sheet: multiples such as 2x, or lengths (world)"),
@@ -56,7 +56,7 @@ METHODS = [
     Method("relief", "Relief", "Takes the relief off a sample and grows it on the selected model", ["sample", "object"], [
         RESOLUTION, DIRECTION, SCALE,
         Choice("strength", "real", 1.0, "height of the relief, relative to the sample's", 0.0, 10.0),
-        Choice("exemplar-resolution", "whole", 128, "voxels along the longest side of a mesh sample", 8, 2000),
+        Choice("exemplar-resolution", "whole", 0, "voxels along the longest side of the sample; 0: the program's choice", 0, 2000),
     ]),
     Method("compare", "Compare", "Statistics of another model beside the selected one's", ["object", "other"], [], result="report"),
 ]

@@ -204,7 +204,7 @@ def check_picture():
     camera.location, camera.rotation_euler = (5, -7, 8), (0.95, 0, 0)
     sun.data.energy, sun.rotation_euler = 3, (0.6, 0.3, 0)
     scene.camera = camera
-    scene.render.engine, scene.cycles.samples = "CYCLES", 8
+    scene.render.engine, scene.cycles.samples, scene.cycles.use_denoising = "CYCLES", 8, False
     scene.render.resolution_x, scene.render.resolution_y = 320, 240
     scene.render.filepath = path("picture.png")
     bpy.ops.render.render(write_still=True)

@@ -37,6 +37,10 @@ class Analogy(CliTest):
         self.ok("analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "t2.vdb", "--direction", "radial", "--threads", 3)
         self.assertEqual(self.read("t1.vdb"), self.read("t2.vdb"))
 
+    def test_a_pair_of_level_sets_is_resampled_together(self):
+        self.ok("analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--exemplar-resolution", 40)
+        self.assertGreater(self.model("m.vdb")["solid_voxels"], 1.2 * self.model("b.vdb")["solid_voxels"])
+
     def test_strokes(self):
         self.write("s.csv", "32,10,32,1,0,0\n32,54,32,-1,0,0\n")
         self.ok("analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--direction", "s.csv")

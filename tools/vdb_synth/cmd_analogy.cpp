@@ -78,7 +78,8 @@ Models loadModels(Run& run) {
         ModelOptions own = pair;
         models.pairs.push_back(run.load(inputs[i], own));
         const double voxelSize = voxelSizeOf(*models.pairs.back().grid);
-        own.voxelSize = extensionOf(inputs[i + 1]) == "vdb" ? 0 : voxelSize;
+        // A level set A2 has its own voxels, unless A was resampled.
+        own.voxelSize = extensionOf(inputs[i + 1]) == "vdb" && pair.resolution == 0 ? 0 : voxelSize;
         own.resolution = 0;
         models.pairs.push_back(run.load(inputs[i + 1], own));
     }

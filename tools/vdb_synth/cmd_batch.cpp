@@ -49,6 +49,8 @@ void refuseCombinations(const Arguments& arguments) {
         refuse("--keep-going and --fail-fast: give one of them");
     if (arguments.has("json") && !arguments.has("dry-run")) refuse("--json: needs --dry-run");
     if (arguments.has("pictures") && !arguments.has("page")) refuse("--pictures: needs --page FILE.html");
+    if (arguments.has("output") && !arguments.has("dry-run") && !arguments.has("schema"))
+        refuse("--output: needs --dry-run or --schema; jobs name their outputs themselves");
 }
 
 nlohmann::json asReport(const Plan& plan, const std::vector<JobStatus>& status) {
@@ -120,7 +122,7 @@ void runBatch(Run& run) {
     const Arguments& arguments = run.arguments;
     refuseCombinations(arguments);
     if (arguments.has("schema")) {
-        printLine(jobSchema().dump(2));
+        run.answer(jobSchema().dump(2));
         return run.finish();
     }
     run.requireInputs(1, 1);
@@ -129,11 +131,10 @@ void runBatch(Run& run) {
         throw Error(ErrorCode::InvalidOption, "a batch is read from a file, as its logs lie beside it");
     const Plan plan = makePlan(readJobFile(path, readJobText(path), setVariables(arguments)));
     if (!arguments.has("dry-run")) return execute(run, plan);
-    std::string text = arguments.has("json")
-                           ? planJson(plan).dump(2, ' ', false, Json::error_handler_t::replace)
-                           : planText(plan);
-    if (text.back() == '\n') text.pop_back();
-    printLine(text);
+    if (arguments.has("json") || arguments.has("output"))
+        run.answer(planJson(plan).dump(2, ' ', false, Json::error_handler_t::replace));
+    else
+        printLine(planText(plan));
     run.finish();
 }
 

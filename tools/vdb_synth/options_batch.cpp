@@ -12,10 +12,6 @@ std::vector<Option> batchOptionTable() {
             .says("jobs that run at once; each gets an equal share of --threads and --max-memory")
             .initially("1")
             .noting("a job waits while the others leave too little memory"),
-        choice("executor", "NAME", {{"local", "processes on this machine"}})
-            .in(Group::Method)
-            .says("what runs the jobs")
-            .initially("local"),
         option(Kind::Text, "set", "NAME=VALUE")
             .in(Group::Method)
             .says("another value for a variable of the job file")
@@ -27,6 +23,9 @@ std::vector<Option> batchOptionTable() {
         flag("dry-run").in(Group::Output).says("check all, print the command line of each job, and run none"),
         flag("json").in(Group::Output).says("with --dry-run: print the plan as JSON"),
         flag("schema").in(Group::Output).says("print a JSON schema of job files, for editors; needs no JOBS"),
+        output("output", "FILE.json", {"json"})
+            .shortly('o')
+            .says("write the plan of --dry-run as JSON, or the schema, to this file"),
         option(Kind::Folder, "logs", "FOLDER")
             .in(Group::Output)
             .says("folder of logs, reports and the record of what is done")

@@ -47,10 +47,10 @@ std::string shellText(const std::vector<std::string>& words) {
 std::string planText(const Plan& plan) {
     std::string text;
     for (const Job& job : plan.jobs) {
+        if (!text.empty()) text += "\n";
         text += job.name + ": vdb_synth " + shellText(wordsOf(job));
         for (std::size_t i = 0; i < job.after.size(); ++i)
             text += (i == 0 ? "  # after " : ", ") + plan.jobs[job.after[i]].name;
-        text += "\n";
     }
     return text;
 }

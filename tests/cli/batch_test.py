@@ -125,7 +125,7 @@ class Refusals(BatchTest):
         self.refused("resolutoin: unknown option of make; did you mean resolution?", {**MAKE, "options": {"resolutoin": 3}})
         self.refused('"synht": unknown key; did you mean "synth"?', MAKE, defaults={"synht": {}})
         self.refused('"name": missing', {"command": "make"})
-        self.refused('did you mean "make"', {**MAKE, "command": "mak"})
+        self.refused('did you mean "make"', {**MAKE, "command": "mkae"})
         self.refused("batch: unknown command", {**MAKE, "command": "batch"})
         self.refused('"jobs": must be a list', name="j.json")
         self.refused('"report": no option of a job', {**MAKE, "options": {"report": "r.json"}})
@@ -167,7 +167,8 @@ class Refusals(BatchTest):
         self.write("deep.json", "[" * 100000)
         self.fails(3, "nested too deeply", "batch", "deep.json")
         self.fails(3, "missing.json", "batch", "missing.json")
-        self.fails(2, "read from a file", "batch", "-", input="{}")
+        self.fails(2, "standard input", "batch", "-", input="{}")
+        self.assertEqual(self.run_tool("batch", "-.json", input="{}").returncode, 2)
 
     def test_words(self):
         self.jobs(MAKE)

@@ -2,6 +2,7 @@
 #include "tools/vdb_synth/command.h"
 #include "tools/vdb_synth/direction_option.h"
 #include "tools/vdb_synth/map_place.h"
+#include "tools/vdb_synth/options.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"

@@ -10,6 +10,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
 #include <thread>
 
 namespace vdbsynth::cli {
@@ -98,17 +101,29 @@ RunOptions optionsFrom(const Run& run, const std::string& logs) {
     return options;
 }
 
+// A page that cannot be written at first is an error; later on, it is no reason to stop the night's jobs.
+std::function<void(const std::vector<JobStatus>&)> pageWriter(const Run& run, const Plan& plan) {
+    const std::string path = run.arguments.text("page");
+    const auto pictures = std::make_shared<std::map<std::string, std::string>>();
+    replaceFile(path, statusPage(plan, std::vector<JobStatus>(plan.jobs.size()), *pictures));
+    const auto warned = std::make_shared<bool>(false);
+    return [=, &run, &plan](const std::vector<JobStatus>& status) {
+        try {
+            replaceFile(path, statusPage(plan, status, *pictures));
+        } catch (const Error& error) {
+            if (!*warned) message(run.context, MessageLevel::Warning, error.what());
+            *warned = true;
+        }
+    };
+}
+
 void execute(Run& run, const Plan& plan) {
     const std::string logs = logsOf(run.arguments, plan.path);
     makeLogs(logs);
     const BatchLock lock(logs, run.context);
     RunOptions options = optionsFrom(run, logs);
     options.keptOpen = lock.jobsFile();
-    std::map<std::string, std::string> pictures;
-    if (run.arguments.has("page"))
-        options.onChange = [&](const std::vector<JobStatus>& status) {
-            replaceFile(run.arguments.text("page"), statusPage(plan, status, pictures));
-        };
+    if (run.arguments.has("page")) options.onChange = pageWriter(run, plan);
     const std::vector<JobStatus> status = runJobs(plan, options, run.context);
     run.count("jobs", asReport(plan, status));
     run.count("done", countOf(status, JobState::Done));

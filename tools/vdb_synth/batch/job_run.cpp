@@ -81,9 +81,15 @@ private:
         return !mTasks.empty() || !mPictures.empty();
     }
 
+    // What cannot be recorded now is tried again, and fails the run at its end.
     void save() {
-        mManifest.save();
-        mUnsaved = false;
+        try {
+            mManifest.save();
+            mUnsaved = false;
+        } catch (const Error& error) {
+            if (!mWarned) message(mContext, MessageLevel::Warning, error.what());
+            mWarned = true;
+        }
         mSaved = Clock::now();
     }
 
@@ -313,7 +319,7 @@ private:
     std::map<pid_t, Task> mTasks;
     std::vector<std::tuple<std::size_t, std::string, std::string>> mPictures;  // job, result, picture
     std::vector<std::size_t> mKilled;
-    bool mFailed = false, mLooked = false, mUnsaved = false;
+    bool mFailed = false, mLooked = false, mUnsaved = false, mWarned = false;
     Clock::time_point mShown = Clock::now(), mSaved{};
 };
 

@@ -173,6 +173,7 @@ class Refusals(BatchTest):
     def test_words(self):
         self.jobs(MAKE)
         self.fails(2, "give one of them", "batch", "j.json", "--keep-going", "--fail-fast")
+        self.fails(2, "is more than the batch may use, 64M", "batch", self.jobs({**MAKE, "options": {"max-memory": "1G"}}), "--max-memory", "64M")
         self.fails(2, "--json: needs --dry-run", "batch", "j.json", "--json")
         self.fails(2, "--pictures: needs --page", "batch", "j.json", "--pictures")
 
@@ -266,6 +267,7 @@ class Runs(BatchTest):
         self.assertNotIn("refresh", page)
         self.assertNotIn("<b>", page)
         self.assertTrue(self.read("j.logs/ball.0.png").startswith(b"\x89PNG"))
+        self.assertFalse([name for name in os.listdir(self.path("j.logs")) if "picture" in name])
         self.batch("--page", "p.html", "--pictures")
         self.assertIn("1 up to date, 1 failed", self.read("p.html").decode())
         self.assertIn("data:image/png;base64,iVBOR", self.read("p.html").decode())
@@ -290,9 +292,9 @@ class Kills(BatchTest):
         for name in self.results():
             os.remove(self.path(name))
 
-    def start(self, *words):
+    def start(self, *words, **options):
         return subprocess.Popen([PROGRAM, "batch", "j.json", "--jobs", "2", *words], cwd=self.folder, stdout=subprocess.PIPE,
-                                stderr=subprocess.PIPE, text=True)
+                                stderr=subprocess.PIPE, text=True, **options)
 
     def finish(self):
         """The same command again ends with the files of an undisturbed run."""
@@ -302,10 +304,13 @@ class Kills(BatchTest):
 
     def test_a_killed_batch_continues(self):
         draw = random.Random(3)
-        for _ in range(12):
-            process = self.start()
+        for kill in range(12):
+            process = self.start(start_new_session=True)
             time.sleep(draw.uniform(0.0, 2.0))
-            process.kill()
+            if kill % 2:
+                os.killpg(process.pid, signal.SIGKILL)  # with all jobs, as a machine that goes down
+            else:
+                process.kill()
             process.communicate()
             for name, content in self.results().items():
                 self.assertEqual(content, self.whole[name])
@@ -333,10 +338,10 @@ class Kills(BatchTest):
             self.finish()
             self.clean()
 
-    def stopped(self, number, code):
-        process = self.start("--page", "p.html")
+    def stopped(self, number, code, send):
+        process = self.start("--page", "p.html", start_new_session=True)
         time.sleep(1.2)
-        process.send_signal(number)
+        send(process.pid, number)
         _, words = process.communicate(timeout=60)
         self.assertEqual(process.returncode, code, words)
         self.assertEqual(len([l for l in words.splitlines() if "error:" in l]), 1, words)
@@ -347,10 +352,10 @@ class Kills(BatchTest):
         self.finish()
 
     def test_interrupt(self):
-        self.stopped(signal.SIGINT, 130)
+        self.stopped(signal.SIGINT, 130, os.killpg)  # a terminal sends it to the jobs too
 
     def test_terminate(self):
-        self.stopped(signal.SIGTERM, 143)
+        self.stopped(signal.SIGTERM, 143, os.kill)
 
     def test_two_at_once(self):
         process = self.start()

@@ -89,6 +89,16 @@ void judge(const Plan& plan, const std::vector<JobStatus>& status, const std::st
     throw Error(ErrorCode::Unusable, countsText(status) + "; first " + first + "; logs in " + logs);
 }
 
+// Its processes inherit the limit of this one.
+void refuseTooMuchMemory(const Plan& plan, const RunContext& ctx) {
+    for (const Job& job : plan.jobs)
+        if (job.arguments.has("max-memory") && job.arguments.wide("max-memory") > ctx.maxMemory)
+            throw Error(ErrorCode::InvalidOption,
+                        plan.path + ": job " + job.name + ": --max-memory " +
+                            job.arguments.text("max-memory") + ": is more than the batch may use, " +
+                            std::to_string(ctx.maxMemory / 1000000) + "M; give batch a larger --max-memory");
+}
+
 RunOptions optionsFrom(const Run& run, const std::string& logs) {
     RunOptions options;
     options.jobs = run.arguments.whole("jobs");
@@ -145,6 +155,7 @@ void runBatch(Run& run) {
     if (run.withoutTemporaries(path) != path)
         throw Error(ErrorCode::InvalidOption, "a batch is read from a file, as its logs lie beside it");
     const Plan plan = makePlan(readJobFile(path, readJobText(path), setVariables(arguments)));
+    refuseTooMuchMemory(plan, run.context);
     if (!arguments.has("dry-run")) return execute(run, plan);
     if (arguments.has("json") || arguments.has("output"))
         run.answer(planJson(plan).dump(2, ' ', false, Json::error_handler_t::replace));

@@ -85,6 +85,18 @@ struct Defaults {
     std::map<std::string, Json> byCommand;
 };
 
+// A default for all commands: at least one must take it.
+void checkDefault(const std::string& name, const Json& value, const std::string& where) {
+    std::vector<std::string> names;
+    for (const std::string& command : jobCommands()) {
+        if (findOption(command, name)) return checkOptions({{name, value}}, command, where);
+        for (const Option& option : optionsOf(command)) names.push_back(option.name);
+    }
+    const std::string near = nearestName(name, names);
+    refuse(where + ": \"" + name + "\": no command has this option" +
+           (near.empty() ? "" : "; did you mean \"" + near + "\"?"));
+}
+
 Defaults readDefaults(const Json& json, const std::string& path) {
     Defaults defaults;
     if (!json.contains("defaults")) return defaults;
@@ -99,21 +111,7 @@ Defaults readDefaults(const Json& json, const std::string& path) {
             continue;
         }
         requireObject(options, where + ": \"options\"");
-        for (const auto& [name, value] : options.items()) {
-            // Unknown to every command, or known to none of them under this name.
-            bool taken = false;
-            std::vector<std::string> all;
-            for (const Option& option : allOptions()) {
-                taken = taken || option.name == name;
-                all.push_back(option.name);
-            }
-            if (!taken) refuse(where + ": \"" + name + "\": unknown option" + hint(name, all));
-            for (const std::string& command : jobCommands())
-                if (findOption(command, name)) {
-                    checkOptions({{name, value}}, command, where);
-                    break;
-                }
-        }
+        for (const auto& [name, value] : options.items()) checkDefault(name, value, where);
         defaults.all = options;
     }
     return defaults;

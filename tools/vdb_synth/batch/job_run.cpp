@@ -192,11 +192,14 @@ private:
         mPictures.erase(mPictures.begin());
         task.reserved = share();
         try {
-            launch(task, pictureWords(result, task.picture, mOptions, share()),
-                   mOptions.logs + "/" + mPlan.jobs[task.job].name + ".picture.log");
+            launch(task, pictureWords(result, task.picture, mOptions, share()), pictureLog(task.job));
         } catch (const Error&) {
             // A page without a picture says enough.
         }
+    }
+
+    std::string pictureLog(std::size_t job) const {
+        return mOptions.logs + "/" + mPlan.jobs[job].name + ".picture.log";
     }
 
     bool finish(const Ended& ended) {
@@ -205,7 +208,9 @@ private:
         const Task task = found->second;
         mTasks.erase(found);
         if (!task.picture.empty()) {
-            if (ended.code == 0) mStatus[task.job].pictures.push_back(task.picture);
+            if (ended.code != 0) return true;
+            mStatus[task.job].pictures.push_back(task.picture);
+            ::unlink(pictureLog(task.job).c_str());
             return true;
         }
         const Job& job = mPlan.jobs[task.job];

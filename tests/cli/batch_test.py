@@ -296,6 +296,13 @@ class Kills(BatchTest):
         return subprocess.Popen([PROGRAM, "batch", "j.json", "--jobs", "2", *words], cwd=self.folder, stdout=subprocess.PIPE,
                                 stderr=subprocess.PIPE, text=True, **options)
 
+    def started(self, process, name):
+        """Waits for a job's log: the batch is at work."""
+        end = time.monotonic() + 60
+        while not os.path.exists(self.path(f"j.logs/{name}.log")) and time.monotonic() < end:
+            time.sleep(0.01)
+        self.assertIsNone(process.poll())
+
     def finish(self):
         """The same command again ends with the files of an undisturbed run."""
         self.ok("batch", "j.json", "--jobs", 2)
@@ -340,7 +347,8 @@ class Kills(BatchTest):
 
     def stopped(self, number, code, send):
         process = self.start("--page", "p.html", start_new_session=True)
-        time.sleep(1.2)
+        self.started(process, "more1")
+        time.sleep(0.2)
         send(process.pid, number)
         _, words = process.communicate(timeout=60)
         self.assertEqual(process.returncode, code, words)
@@ -359,8 +367,7 @@ class Kills(BatchTest):
 
     def test_two_at_once(self):
         process = self.start()
-        time.sleep(0.5)
-        self.assertIsNone(process.poll())
+        self.started(process, "ball")
         result = self.run_tool("batch", "j.json")
         self.assertEqual(result.returncode, 3, result.stderr)
         self.assertIn("another batch runs here", result.stderr)

@@ -78,6 +78,7 @@ TEST_CASE("filledIn: variables and parts of paths", "[tools]") {
     CHECK(filledText("${a.stem} ${a.file} ${a.folder}") == "y.tar y.tar.vdb x");
     CHECK(filledText("$${n} $n {n}") == "${n} $n {n}");
     CHECK(filledText("") == "");
+    CHECK(test::thrownBy([] { filledText(std::string("a\0b", 3)); }).code == int(ErrorCode::InvalidOption));
     for (const char* text : {"${m}", "${n", "${}", "${a.size}", "${list}"})
         CHECK(test::thrownBy([&] { filledText(text); }).code == int(ErrorCode::InvalidOption));
 }

@@ -44,6 +44,11 @@ std::string valueOf(const std::string& reference, const std::map<std::string, Js
 }  // namespace
 
 std::string filledIn(const std::string& text, const std::map<std::string, Json>& values) {
+    // It would end the text where the system reads it.
+    if (text.find('\0') != std::string::npos)
+        throw Error(
+            ErrorCode::InvalidOption,
+            std::string(text.c_str()) + ": holds a zero byte (\\u0000), which no path or value can have");
     std::string result;
     for (std::size_t at = 0; at < text.size();) {
         if (text.compare(at, 3, "$${") == 0) {

@@ -248,6 +248,16 @@ class Runs(BatchTest):
         options = [json.loads(self.read(f"j.logs/{name}.report.json"))["options"] for name in ("ball", "own")]
         self.assertEqual([(o["threads"], o["max-memory"]) for o in options], [("2", "1000000000"), ("3", "300M")])
 
+    def test_a_job_waits_for_memory(self):
+        for memory, waits in (("700M", True), ("300M", False)):
+            with self.subTest(memory):
+                self.jobs(*[{**MAKE, "name": n, "output": n + memory + ".vdb", "options": {"resolution": 96, "quiet": True, "max-memory": memory}}
+                            for n in "ab"])
+                self.ok("batch", "j.json", "--jobs", 2, "--max-memory", "1G")
+                # A quiet job's log is written once, when it starts.
+                began, ended = (os.stat(self.path(name)).st_mtime_ns for name in ("j.logs/b.log", f"a{memory}.vdb"))
+                self.assertEqual(began > ended, waits)
+
     def test_a_share_that_does_not_suffice(self):
         self.jobs({**MAKE, "options": {"resolution": 128}},
                   {"name": "more", "command": "mask", "inputs": "ball", "output": "m.vdb",

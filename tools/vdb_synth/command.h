@@ -95,7 +95,7 @@ struct Command {
     std::string name, usage, summary, example;
     void (*run)(Run&);              ///< checks its options before it reads a file
     bool inputsAreOutputs = false;  ///< its inputs are the names of the files it writes
-    bool runsOthers = false;        ///< runs other commands as processes of their own, and watches these itself
+    bool runsOthers = false;  ///< runs other commands as processes of their own, and watches these itself
 };
 
 /// The only registry of commands.

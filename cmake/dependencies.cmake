@@ -16,6 +16,7 @@ find_package(TinyGLTF REQUIRED)
 find_package(pugixml REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(nlohmann_json REQUIRED)
+find_package(yaml-cpp REQUIRED)
 find_package(Boost REQUIRED COMPONENTS program_options)
 # Debian's Imath, which OpenEXR's own package file asks for, names that same Python library: by path instead.
 find_path(OPENEXR_INCLUDE_DIR ImfHeader.h PATH_SUFFIXES OpenEXR REQUIRED)

@@ -57,13 +57,14 @@ class Ply(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "a.obj")
             with open(path, "w") as file:
-                file.write("v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+                file.write("".join(f"v {x} {y} {z}\n" for x in (0, 9) for y in (0, 9) for z in (0, 9)) +
+                           "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n")
             out = os.path.join(folder, "a.ply")
             subprocess.run([os.environ["VDBSYNTH_PROGRAM"], "convert", path, "-o", out, "--resolution", "16", "-q"], check=True)
             points, faces, _ = ply.read_ply(out)
             self.assertGreater(len(points), 100)
             self.assertLess(max(max(face) for face in faces), len(points))
-            self.assertTrue(np.allclose(points.max(0), 9, atol=1.5))
+            self.assertTrue(np.allclose(points.max(0), 9, atol=0.1))
 
 
 if __name__ == "__main__":

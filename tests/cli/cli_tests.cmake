@@ -9,6 +9,7 @@ function(add_cli_test file)
 endfunction()
 
 add_cli_test(analogy_test Analogy)
+add_cli_test(batch_test Plans Refusals Runs Kills)
 add_cli_test(compare_test Compare Libraries Page)
 add_cli_test(options_test Answers Overwriting Help Moved)
 add_cli_test(patch_test Sheets Refused)

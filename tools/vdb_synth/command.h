@@ -98,6 +98,7 @@ struct Command {
     std::string name, usage, summary, example;
     void (*run)(Run&);              ///< checks its options before it reads a file
     bool inputsAreOutputs = false;  ///< its inputs are the names of the files it writes
+    bool runsOthers = false;  ///< runs other commands as processes of their own, and watches these itself
 };
 
 /// The only registry of commands.
@@ -112,6 +113,6 @@ std::string helpText(const Command& command);
 void printLine(const std::string& text);
 
 extern const Command kAnalogy, kCompare, kConvert, kInfo, kCrop, kMask, kMatch, kSynth, kTexture, kRepeat,
-    kRender, kMake, kRelief, kReliefExtract, kPatch;
+    kRender, kMake, kRelief, kReliefExtract, kPatch, kBatch;
 
 }  // namespace vdbsynth::cli

@@ -1,6 +1,7 @@
 // A comparison as one page: pictures, verdicts, curves. The page is self-contained; its script only shows a
 // curve's value under the pointer.
 #include "tools/vdb_synth/compare_report.h"
+#include "tools/vdb_synth/html_text.h"
 
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/measure/patch_distribution.h"
@@ -39,46 +40,9 @@ document.body.dataset.ready = "yes";
 
 const char* const kColours[] = {"#55606a", "#c2571a", "#2166ac", "#17693b", "#7b3294", "#a67c00"};
 
-std::string escaped(const std::string& text) {
-    std::string result;
-    for (char c : text) switch (c) {
-            case '&':
-                result += "&amp;";
-                break;
-            case '<':
-                result += "&lt;";
-                break;
-            case '>':
-                result += "&gt;";
-                break;
-            case '"':
-                result += "&quot;";
-                break;
-            case '\'':
-                result += "&#39;";
-                break;
-            default:
-                result += c;
-        }
-    return result;
-}
-
-std::string base64(const std::string& bytes) {
-    static const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        std::uint32_t word = 0;
-        for (std::size_t k = 0; k < 3; ++k)
-            word = word << 8 | (i + k < bytes.size() ? std::uint8_t(bytes[i + k]) : 0u);
-        for (std::size_t k = 0; k < 4; ++k)
-            text += i + k <= bytes.size() ? letters[word >> (18 - 6 * k) & 63] : '=';
-    }
-    return text;
-}
-
 std::string image(const Picture& picture, const std::string& what) {
-    return "<img alt=\"" + escaped(what) + "\" src=\"data:image/png;base64," + base64(encodePng(picture)) +
-           "\">";
+    return "<img alt=\"" + htmlText(what) + "\" src=\"data:image/png;base64," +
+           base64Text(encodePng(picture)) + "\">";
 }
 
 // A name within a JSON string within an attribute.
@@ -126,12 +90,12 @@ std::string chart(const std::string& title, const std::vector<NamedCurve>& curve
         json += std::string(json.empty() ? "" : ",") + "{\"name\":\"" + jsonName(curves[c].name) +
                 "\",\"values\":[" + values + "]}";
     }
-    return "<figure><svg viewBox=\"0 0 400 210\" data-curves=\"" + escaped("[" + json + "]") +
+    return "<figure><svg viewBox=\"0 0 400 210\" data-curves=\"" + htmlText("[" + json + "]") +
            "\"><g font-size=\"11\" fill=\"#55606a\"><text x=\"2\" y=\"24\">" + shortNumber(high) +
            "</text><text x=\"2\" y=\"194\">" + shortNumber(low) + "</text><text x=\"40\" y=\"206\">0</text>" +
            "<text x=\"390\" y=\"206\" text-anchor=\"end\">" + std::to_string(n - 1) +
            " voxels</text></g><path d=\"M40 20V190H390\" fill=\"none\" stroke=\"#b8c0c7\"/>" + lines +
-           "</svg><figcaption>" + escaped(title) + "<output></output></figcaption></figure>\n";
+           "</svg><figcaption>" + htmlText(title) + "<output></output></figcaption></figure>\n";
 }
 
 // A statistic with one curve per axis holds them one after another.
@@ -178,12 +142,13 @@ std::string numbers(const Statistic& statistic) {
 std::string statisticsTable(const Comparison& comparison, std::size_t i) {
     const ModelStatistics &reference = comparison.reference, &other = comparison.others[i];
     const std::vector<Verdict>& verdicts = comparison.distances[i].verdicts;
-    std::string html = "<table>" + cells({"statistic (voxels)", escaped(reference.name), escaped(other.name),
-                                          "distance", "sigma of the sub-volumes", "sigmas away", "verdict"},
-                                         "th");
+    std::string html =
+        "<table>" + cells({"statistic (voxels)", htmlText(reference.name), htmlText(other.name), "distance",
+                           "sigma of the sub-volumes", "sigmas away", "verdict"},
+                          "th");
     const std::size_t count = std::min(reference.statistics.size(), other.statistics.size());
     for (std::size_t s = 0; s < count; ++s) {
-        std::vector<std::string> row{escaped(other.statistics[s].name), numbers(reference.statistics[s]),
+        std::vector<std::string> row{htmlText(other.statistics[s].name), numbers(reference.statistics[s]),
                                      numbers(other.statistics[s])};
         const Statistic &a = reference.statistics[s], &b = other.statistics[s];
         if (const Verdict* v = findVerdict(verdicts, b.name))
@@ -195,16 +160,16 @@ std::string statisticsTable(const Comparison& comparison, std::size_t i) {
         html += cells(row);
     }
     for (const Verdict& v : scaleVerdicts(comparison, i))
-        html += cells({escaped(v.name), "0", shortNumber(v.distance), shortNumber(v.distance),
+        html += cells({htmlText(v.name), "0", shortNumber(v.distance), shortNumber(v.distance),
                        shortNumber(v.sigma), shortNumber(v.away()), verdictCell(v)});
     return html + "</table>\n";
 }
 
 std::string countsTable(const Comparison& comparison, std::size_t i) {
     const ModelStatistics &a = comparison.reference, &b = comparison.others[i];
-    std::string html = "<table>" + cells({"counts", escaped(a.name), escaped(b.name)}, "th");
+    std::string html = "<table>" + cells({"counts", htmlText(a.name), htmlText(b.name)}, "th");
     const auto row = [&](const std::string& name, double of, double other) {
-        html += cells({escaped(name), shortNumber(of), shortNumber(other)});
+        html += cells({htmlText(name), shortNumber(of), shortNumber(other)});
     };
     row("solid components", double(a.topology.solid.sizes.size()), double(b.topology.solid.sizes.size()));
     row("void components", double(a.topology.empty.sizes.size()), double(b.topology.empty.sizes.size()));
@@ -230,7 +195,7 @@ std::string distancesTable(const ModelDistances& d) {
     if (d.surface)
         html += ". Surfaces: mean distance " + shortNumber(d.surface->mean) + " voxels, Hausdorff " +
                 shortNumber(d.surface->hausdorff);
-    html += ".</p>\n<p>Novelty " + escaped(sourceText(d));
+    html += ".</p>\n<p>Novelty " + htmlText(sourceText(d));
     if (d.sourceKind != SourceKind::None)
         html += ": " + shortNumber(100 * d.novelty.verbatimShare) + " % in verbatim runs, the largest " +
                 shortNumber(d.novelty.largestRun) + " voxels, " + shortNumber(100 * d.novelty.largestShare) +
@@ -245,7 +210,7 @@ std::string yardstickTable(const Comparison& comparison) {
         "<h2>Yardstick: 1 is as far as another exemplar of the process</h2><table>" +
         cells({"statistic", "results", "fresh exemplars", "shifted by half a voxel", "ratio"}, "th");
     for (const Yardstick& y : comparison.yardsticks)
-        html += cells({escaped(y.name), shortNumber(y.results), shortNumber(y.fresh), shortNumber(y.shifted),
+        html += cells({htmlText(y.name), shortNumber(y.results), shortNumber(y.fresh), shortNumber(y.shifted),
                        "<span class=\"" + std::string(y.ratio() <= 1 ? "pass" : "far") + "\">" +
                            shortNumber(y.ratio()) + "</span>"});
     return html + "</table>\n";
@@ -259,7 +224,7 @@ std::string modelFigures(const Comparison& comparison, const std::vector<ModelPi
         const Index3 size = model.domain.size();
         html += "<figure>" + image(pictures[m].shaded, name) + image(pictures[m].slice, "slice of " + name) +
                 "<figcaption><span style=\"color:" + kColours[m % std::size(kColours)] +
-                "\">&#9632;</span> " + escaped(name) + ", " + std::to_string(size.x) + " x " +
+                "\">&#9632;</span> " + htmlText(name) + ", " + std::to_string(size.x) + " x " +
                 std::to_string(size.y) + " x " + std::to_string(size.z) + " voxels of " +
                 shortNumber(model.voxelSize) + "</figcaption></figure>\n";
     }
@@ -268,7 +233,7 @@ std::string modelFigures(const Comparison& comparison, const std::vector<ModelPi
 
 std::string otherSection(const Comparison& comparison, std::size_t i) {
     const ModelDistances& d = comparison.distances[i];
-    std::string html = "<h2>" + escaped(comparison.others[i].name) + "</h2>\n";
+    std::string html = "<h2>" + htmlText(comparison.others[i].name) + "</h2>\n";
     if (d.verdicts.empty())
         html +=
             "<p class=\"verdict\">No verdict: the reference is stationary along no axis, or too small.</p>";
@@ -284,8 +249,8 @@ std::string otherSection(const Comparison& comparison, std::size_t i) {
 std::string comparisonPage(const Comparison& comparison, const std::vector<ModelPictures>& pictures) {
     std::string title = comparison.reference.name + " and";
     for (const ModelStatistics& other : comparison.others) title += " " + other.name;
-    std::string html = kHead + std::string("<title>") + escaped(title) + "</title></head><body>\n<h1>" +
-                       escaped(title) + "</h1>\n" + modelFigures(comparison, pictures);
+    std::string html = kHead + std::string("<title>") + htmlText(title) + "</title></head><body>\n<h1>" +
+                       htmlText(title) + "</h1>\n" + modelFigures(comparison, pictures);
     for (std::size_t i = 0; i < comparison.others.size(); ++i) html += otherSection(comparison, i);
     html += yardstickTable(comparison) + "<h2>Curves</h2>\n<div class=\"curves\">";
     for (std::size_t s = 0; s < comparison.reference.statistics.size(); ++s)

@@ -158,7 +158,7 @@ int dispatch(char** argv, const std::string& name, const std::vector<std::string
         return arguments.has("frames") ? executeFrames(*command, arguments, line)
                                        : execute(*command, arguments, line);
     };
-    if (arguments.has("no-supervisor")) {
+    if (arguments.has("no-supervisor") || command->runsOthers) {
         installStopHandlers();
         return work(SupervisorLine());
     }

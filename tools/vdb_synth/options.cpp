@@ -82,7 +82,7 @@ const std::vector<Option>& allOptions() {
         std::vector<Option> table;
         for (const auto& part :
              {methodOptionTable(), textureOptionTable(), patchOptionTable(), reliefOptionTable(),
-              reliefExtractOptionTable(), modelOptionTable(), runningOptionTable()})
+              reliefExtractOptionTable(), modelOptionTable(), batchOptionTable(), runningOptionTable()})
             table.insert(table.end(), part.begin(), part.end());
         return table;
     }();

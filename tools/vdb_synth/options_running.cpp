@@ -5,12 +5,12 @@
 namespace vdbsynth::cli {
 
 std::vector<Option> runningOptionTable() {
-    const std::vector<std::string> every{"convert", "info",    "crop",    "mask",           "match",
-                                         "synth",   "analogy", "texture", "repeat",         "compare",
-                                         "render",  "make",    "relief",  "relief-extract", "patch"};
+    const std::vector<std::string> every{"convert", "info",           "crop",   "mask",    "match",  "synth",
+                                         "analogy", "texture",        "repeat", "compare", "render", "make",
+                                         "relief",  "relief-extract", "patch",  "batch"};
     std::vector<std::string> sequences;
     for (const std::string& command : every)
-        if (command != "make") sequences.push_back(command);
+        if (command != "make" && command != "batch") sequences.push_back(command);
     std::vector<Option> table{
         option(Kind::Seed, "seed", "N")
             .says("seed of everything random")

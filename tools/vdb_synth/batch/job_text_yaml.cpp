@@ -1,0 +1,86 @@
+// YAML as JSON, through yaml-cpp.
+#include "tools/vdb_synth/batch/job_text.h"
+
+#include "libvdbsynth/base/error.h"
+
+#include <yaml-cpp/yaml.h>
+
+namespace vdbsynth::cli::batch {
+namespace {
+
+constexpr int kDeepest = 64;
+constexpr std::size_t kMostValues = 1000000;
+
+class Converter {
+public:
+    explicit Converter(std::string path) : mPath(std::move(path)) {}
+
+    Json convert(const YAML::Node& node, int depth) {
+        if (depth > kDeepest) fail(node, "is nested too deeply for a job file");
+        // Aliases of aliases: a few lines stand for billions of values.
+        if (++mValues > kMostValues) fail(node, "stands for more than a million values");
+        switch (node.Type()) {
+            case YAML::NodeType::Sequence: {
+                Json list = Json::array();
+                for (const YAML::Node& item : node) list.push_back(convert(item, depth + 1));
+                return list;
+            }
+            case YAML::NodeType::Map:
+                return object(node, depth);
+            case YAML::NodeType::Scalar:
+                return scalar(node);
+            default:
+                return nullptr;
+        }
+    }
+
+private:
+    [[noreturn]] void fail(const YAML::Node& node, const std::string& what) const {
+        throw Error(ErrorCode::BadData,
+                    mPath + ": line " + std::to_string(node.Mark().line + 1) + ": " + what);
+    }
+
+    Json object(const YAML::Node& node, int depth) {
+        Json made = Json::object();
+        for (const auto& entry : node) {
+            if (!entry.first.IsScalar()) fail(entry.first, "a key must be a word");
+            const std::string key = entry.first.Scalar();
+            if (key == "<<") fail(entry.first, "merged keys (<<) are not read; use \"defaults\"");
+            if (made.contains(key)) fail(entry.first, "\"" + key + "\" stands twice; keep one of them");
+            made[key] = convert(entry.second, depth + 1);
+        }
+        return made;
+    }
+
+    static Json scalar(const YAML::Node& node) {
+        const std::string& word = node.Scalar();
+        if (node.Tag() == "!") return word;  // in quotes
+        if (word == "true" || word == "True" || word == "TRUE") return true;
+        if (word == "false" || word == "False" || word == "FALSE") return false;
+        if (word.empty() || word == "null" || word == "~") return nullptr;
+        return word;
+    }
+
+    std::string mPath;
+    std::size_t mValues = 0;
+};
+
+}  // namespace
+
+Json parseYaml(const std::string& path, const std::string& text) {
+    try {
+        const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+        if (documents.size() != 1)
+            throw Error(ErrorCode::BadData, path + ": holds " + std::to_string(documents.size()) +
+                                                " documents; a job file is one");
+        return Converter(path).convert(documents.front(), 0);
+    } catch (const YAML::Exception& error) {
+        const std::string place = error.mark.is_null()
+                                      ? ""
+                                      : "at line " + std::to_string(error.mark.line + 1) + ", column " +
+                                            std::to_string(error.mark.column + 1) + ": ";
+        throw Error(ErrorCode::BadData, path + ": no valid YAML: " + place + error.msg);
+    }
+}
+
+}  // namespace vdbsynth::cli::batch

@@ -41,6 +41,17 @@ class Analogy(CliTest):
         self.ok("analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--exemplar-resolution", 40)
         self.assertGreater(self.model("m.vdb")["solid_voxels"], 1.2 * self.model("b.vdb")["solid_voxels"])
 
+    def test_texture_size_is_the_scale_in_world_units(self):
+        corners = list(map(int, self.model("a.vdb")["domain"].split(",")))
+        side = max(corners[k + 3] - corners[k] + 1 for k in range(3))
+        voxel = self.model("b.vdb")["voxel_size"]
+        self.ok("analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "s.vdb", "--scale", 0.5)
+        self.ok("analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "t.vdb", "--texture-size", 0.5 * side * voxel)
+        self.assertEqual(self.model("s.vdb")["solid_voxels"], self.model("t.vdb")["solid_voxels"])
+        words = ("analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "x.vdb", "--texture-size")
+        self.fails(2, "give one of them", *words, 10, "--scale", 1)
+        self.fails(2, "a scale of", *words, 1000 * side * voxel)
+
     def test_strokes(self):
         self.write("s.csv", "32,10,32,1,0,0\n32,54,32,-1,0,0\n")
         self.ok("analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--direction", "s.csv")

@@ -69,7 +69,10 @@ class Compare(CliTest):
         self.assertAlmostEqual(area["world"][0], area["voxels"][0] * 2, places=9)
         self.assertEqual(found["stationary"], "xyz")
         self.assertEqual(found["sub_volumes"], 8)
-        self.assertEqual(len(found["others"][0]["distances"]["verdicts"]), len(found["others"][0]["statistics"]) + 1)
+        # Patches of one scale, and the fraction against the standard error of its correlations.
+        verdicts = found["others"][0]["distances"]["verdicts"]
+        self.assertEqual(len(verdicts), len(found["others"][0]["statistics"]) + 2)
+        self.assertEqual(verdicts[-1]["name"], "volume fraction, standard error")
 
     def test_a_copy_passes_and_another_material_does_not(self):
         self.assertTrue(self.comparison("a.vdb", "a.vdb")["others"][0]["distances"]["passes"])

@@ -25,6 +25,10 @@ class Synth(CliTest):
         self.assertEqual(len(hashes), 3)
         self.ok("synth", "e.vdb", "-o", "t.vdb", "--size", "48,48,32", "--border", "tile,tile,cut")
         self.assertEqual(self.model("t.vdb")["domain"], "0,0,0,47,47,31")
+        self.ok("synth", "e.vdb", "-o", "w.vdb", "--size", "48.2w,48w,1x", "--draft")
+        self.assertEqual(self.model("w.vdb")["domain"], "0,0,0,47,47,31")
+        self.fails(2, "or a length (world, with a w)", "synth", "e.vdb", "-o", "m.vdb", "--size", "2.5m,2x,1x")
+        self.fails(2, "must be 1 to 1048576 voxels of 1 (world)", "synth", "e.vdb", "-o", "m.vdb", "--size", "0.1w,2x,1x")
         self.fails(2, "--method", "synth", "e.vdb", "-o", "m.vdb", "--size", "2x,2x,1x", "--method", "best")
         self.fails(2, "--border tile: needs --method default", "synth", "e.vdb", "-o", "m.vdb", "--size", "2x,2x,1x", "--border", "tile",
                    "--method", "exact")

@@ -34,6 +34,7 @@ TEST_CASE("normalValue: one form however it was typed", "[tools]") {
     CHECK(normal("convert", "voxel-size", "0.50") == "0.5");
     CHECK(normal("synth", "size", "2.0x,128,1x") == "2x,128,1x");
     CHECK(normal("synth", "size", "100000,128,1x") == "100000,128,1x");
+    CHECK(normal("synth", "size", "2.50w,128,1x") == "2.5w,128,1x");
     CHECK(normal("synth", "border", "tile") == "tile,tile,tile");
     CHECK(normal("synth", "border", "cut,object,tile") == "cut,object,tile");
     CHECK(normal("crop", "box", "0,0,0,7,8,9") == "0,0,0,7,8,9");

@@ -3,6 +3,7 @@
 #include "tools/vdb_synth/direction_option.h"
 #include "tools/vdb_synth/map_place.h"
 #include "tools/vdb_synth/options.h"
+#include "tools/vdb_synth/texture_size.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
@@ -195,6 +196,9 @@ struct Made {
 
 Made makeResult(Run& run, AnalogyOptions options) {
     Models models = loadModels(run);
+    if (run.arguments.has("texture-size"))
+        options.scale = scaleOfSize(run.arguments, longestSide(models.pairs.front()),
+                                    voxelSizeOf(*models.target.grid), "--exemplar-resolution");
     keepNamedAttributes(run.arguments, models.pairs);
     loadMask(run, voxelSizeOf(*models.target.grid), options);
     options.direction = directionOf(run, "direction");

@@ -1,6 +1,7 @@
 #include "tools/vdb_synth/command.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/geometry/mesh.h"
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/path.h"
@@ -13,6 +14,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 namespace vdbsynth::cli {
 namespace {
@@ -111,6 +114,22 @@ Json gridInfo(const GridSummary& s) {
     return grid;
 }
 
+// Why a level set is no valid narrow band, each with what helps.
+std::vector<std::string> faultsOf(const BandQuality& quality) {
+    constexpr double kMostError = 0.15;
+    std::vector<std::string> faults;
+    if (!quality.finite) faults.push_back("it has values that are no finite numbers");
+    if (!(quality.gradientErrorMean < kMostError))
+        faults.push_back("its values are no distances: | |grad| - 1 | is " +
+                         roundedText(quality.gradientErrorMean, 3) + " in the mean, under " +
+                         roundedText(kMostError, 3) + " is good; convert IN.vdb -o OUT.vdb rebuilds them");
+    if (quality.missingNeighbours > 0)
+        faults.push_back(std::to_string(quality.missingNeighbours) +
+                         " voxels next to the surface have inactive neighbours; convert IN.vdb -o OUT.vdb "
+                         "rebuilds the band");
+    return faults;
+}
+
 Json vdbInfo(const std::string& path, Run& run) {
     Json info{{"file", run.withoutTemporaries(path)}, {"kind", "vdb"}};
     Json grids = Json::array();
@@ -127,17 +146,17 @@ Json vdbInfo(const std::string& path, Run& run) {
         const LevelSet model = modelFromGrids(path, contents.grids, read, run.context);
         const BandQuality quality = measureBand(*model.grid, run.context);
         info["model"] = surfaceJson(levelSetToMesh(*model.grid, {}, run.context), run.context);
-        info["model"].update(Json{
-            {"voxel_size", voxelSizeOf(*model.grid)},
-            {"half_width", halfWidthOf(*model.grid)},
-            {"domain", boxText(model.domain)},
-            {"domain_recorded", model.domainRecorded},
-            {"solid_voxels", solidVoxels(*model.grid)},
-            {"active_voxels", activeVoxels(*model.grid)},
-            {"gradient_error_mean", quality.gradientErrorMean},
-            {"gradient_error_p99", quality.gradientErrorP99},
-            {"band_gaps", quality.missingNeighbours},
-            {"valid", quality.finite && quality.gradientErrorMean < 0.15 && quality.missingNeighbours == 0}});
+        info["model"].update(Json{{"voxel_size", voxelSizeOf(*model.grid)},
+                                  {"half_width", halfWidthOf(*model.grid)},
+                                  {"domain", boxText(model.domain)},
+                                  {"domain_recorded", model.domainRecorded},
+                                  {"solid_voxels", solidVoxels(*model.grid)},
+                                  {"active_voxels", activeVoxels(*model.grid)},
+                                  {"gradient_error_mean", quality.gradientErrorMean},
+                                  {"gradient_error_p99", quality.gradientErrorP99},
+                                  {"band_gaps", quality.missingNeighbours},
+                                  {"valid", faultsOf(quality).empty()}});
+        if (!faultsOf(quality).empty()) info["model"]["not_valid_because"] = faultsOf(quality);
     } catch (const Error& error) {
         if (error.code() == ErrorCode::Cancelled) throw;
         info["model"] = nullptr;

@@ -4,6 +4,7 @@
 #include "tools/vdb_synth/relief_base_option.h"
 #include "tools/vdb_synth/texture_files.h"
 #include "tools/vdb_synth/texture_region_option.h"
+#include "tools/vdb_synth/texture_size.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
@@ -260,6 +261,13 @@ void relief(Run& run) {
     // Painted masks come with the target's attributes.
     model.carry = arguments.has("mask-attribute") || arguments.has("mask-image");
     const LevelSet target = run.load(arguments.inputs.back(), model);
+    if (arguments.has("texture-size")) {
+        const ReliefSource& first = samples.sources.front();
+        const double side = first.scan ? longestSide(*first.scan)
+                                       : double(std::max(first.heights.width, first.heights.height));
+        const double unit = first.pixelSize > 0 ? first.pixelSize : voxelSizeOf(*target.grid);
+        options.scale = scaleOfSize(arguments, side, unit, "--exemplar-resolution");
+    }
     const Mask mask = loadMask(run, voxelSizeOf(*target.grid), options);
     if (mask.isModel) options.maskModel = &mask.model;
     options.maskAttribute = arguments.text("mask-attribute");

@@ -4,6 +4,7 @@
 #include "tools/vdb_synth/map_place.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/pipeline/convert/outputs.h"
 #include "libvdbsynth/pipeline/fill/fill.h"
@@ -11,6 +12,8 @@
 #include "libvdbsynth/vdb/control_grids.h"
 
 #include <nlohmann/json.hpp>
+
+#include <cmath>
 
 #include <optional>
 
@@ -24,8 +27,23 @@ void readSize(const Arguments& arguments, SynthOptions& options) {
                     "--size: missing; give X,Y,Z in voxels or as multiples, for example --size 2x,2x,1x");
     const std::array<SizeValue, 3> sizes = arguments.sizes("size");
     for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (sizes[axis].world) continue;  // withWorldSizes
         options.size[int(axis)] = sizes[axis].multiple ? Extent::multiple(sizes[axis].value)
                                                        : Extent::voxels(int(sizes[axis].value));
+    }
+}
+
+// Lengths become voxels once the exemplar's are known.
+void withWorldSizes(const Arguments& arguments, double voxelSize, SynthOptions& options) {
+    const std::array<SizeValue, 3> sizes = arguments.sizes("size");
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (!sizes[axis].world) continue;
+        const double voxels = std::round(sizes[axis].value / voxelSize);
+        if (!(voxels >= 1 && voxels <= 1 << 20))
+            throw Error(ErrorCode::InvalidOption,
+                        "--size " + arguments.text("size") + ": must be 1 to 1048576 voxels of " +
+                            roundedText(voxelSize, 6) + " (world) along every axis");
+        options.size[int(axis)] = Extent::voxels(int(voxels));
     }
 }
 
@@ -192,6 +210,7 @@ void synth(Run& run) {
     modelOptions.carry = true;
     std::vector<LevelSet> exemplars = loadExemplars(run, modelOptions);
     keepNamedAttributes(run.arguments, exemplars);
+    withWorldSizes(run.arguments, voxelSizeOf(*exemplars.front().grid), options);
     if (run.arguments.has("exemplar-mask")) options.exemplarMask = run.loadGrid("exemplar-mask");
     loadControls(run, voxelSizeOf(*exemplars.front().grid), options);
     const SynthResult result = synthesize(pointersTo(exemplars), options, run.context);

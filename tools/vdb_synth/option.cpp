@@ -146,8 +146,8 @@ std::string allowedText(const Option& option) {
                    "example "
                    "4x,4x or 2.5,1";
         case Kind::Sizes:
-            return "three sizes with commas, each in voxels (1 to 1048576) or a multiple (from 1x), for "
-                   "example 2x,2x,1x or 128,128,64";
+            return "three sizes with commas, each in voxels (1 to 1048576), a multiple (from 1x) or a length "
+                   "(world, with a w), for example 2x,2x,1x, 128,128,64 or 2.5w,2.5w,1x";
         case Kind::Pixels:
             return "WIDTHxHEIGHT, each from " + rangeText(option) + " (pixels)";
         case Kind::Slice:

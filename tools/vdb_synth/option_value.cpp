@@ -77,9 +77,11 @@ std::string normalSizes(const Option& option, const std::string& given) {
     for (const SizeValue& size : sizes) {
         const bool good =
             size.multiple ? size.value >= 1 && size.value <= 1e6
+            : size.world  ? size.value > 0 && size.value <= 1e30
                           : size.value == std::floor(size.value) && size.value >= 1 && size.value <= 1 << 20;
         if (!good) refuseValue(option, given);
         parts.push_back(size.multiple ? exactText(size.value) + "x"
+                        : size.world  ? exactText(size.value) + "w"
                                       : std::to_string(static_cast<long long>(size.value)));
     }
     return joined(parts);

@@ -12,10 +12,11 @@
 
 namespace vdbsynth::cli {
 
-/// A length of a Kind::Sizes: in voxels, or as a multiple of the exemplar's domain.
+/// A length of a Kind::Sizes: in voxels, in world units, or as a multiple of the exemplar's domain.
 struct SizeValue {
     double value = 0;
     bool multiple = false;
+    bool world = false;  ///< "2.5w": a length in world units
 };
 
 /// A Kind::Slice: an axis and a position along it.

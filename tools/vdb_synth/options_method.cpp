@@ -229,6 +229,18 @@ std::vector<Option> analogyTable() {
             .initially("1")
             .noting("2 is twice as large in B's voxels")
             .takenBy({"analogy"}),
+        worldLength("texture-size", "W")
+            .in(Group::Controls)
+            .says(
+                "length on B that the longest side of A's domain covers, instead of --scale: the same at any "
+                "resolution of B")
+            .takenBy({"analogy", "relief"})
+            .butFor("relief",
+                    [](Option& o) {
+                        o.says(
+                            "length on TARGET that the longest side of the first SAMPLE covers, instead of "
+                            "--scale: the same at any resolution of TARGET");
+                    }),
         real("strength", "T", 0, 1)
             .in(Group::Controls)
             .says("blend from B to the result")

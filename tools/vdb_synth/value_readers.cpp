@@ -119,7 +119,8 @@ namespace {
 
 bool readSize(std::string part, SizeValue& size) {
     size.multiple = !part.empty() && part.back() == 'x';
-    if (size.multiple) part.pop_back();
+    size.world = !part.empty() && part.back() == 'w';
+    if (size.multiple || size.world) part.pop_back();
     return parseReal(part, size.value);
 }
 

@@ -126,7 +126,7 @@ TEST_CASE("fingerprintOf: what a result depends on, and nothing else", "[tools][
     CHECK(print(R"("size": "2x,1x,1x")") != first);
 }
 
-TEST_CASE("Manifest: what was put comes back; a damaged one is said", "[tools]") {
+TEST_CASE("Manifest: what was put comes back, a damaged one is said", "[tools]") {
     const test::TemporaryFolder folder;
     int warnings = 0;
     RunContext ctx;

@@ -83,7 +83,8 @@ PatchFeature patchFeature(const PatchField& exemplar, const RunContext& ctx) {
 int patchSide(const PatchField& exemplar, const PatchFeature& feature) {
     const int shorter = std::min(exemplar.lattice.nx, exemplar.lattice.ny);
     const int least = feature.repeats ? 6 : std::max(6, shorter / 4);
-    return std::max(std::min(shorter, 2), std::min(std::max(least, feature.columns * 3 / 2), shorter * 2 / 3));
+    return std::max(std::min(shorter, 2),
+                    std::min(std::max(least, feature.columns * 3 / 2), shorter * 2 / 3));
 }
 
 PatchSides patchSides(const PatchField& field, double patch, double overlap, const RunContext& ctx) {

@@ -35,8 +35,8 @@ std::vector<GridPtr> transferToVoxels(const std::vector<MappedVoxel>& voxels,
                                       const RunContext& ctx = {}, int within = 2);
 
 /// The part of transferAttributes beyond the band, of grids that are active there, into the grids that the
-/// band's part made. Nothing where no grid is. Fog (floats of the class fog volume) of a synthesis is the mean
-/// over all blocks at a voxel, as the surface is, in the band too. @param map  by blocks
+/// band's part made. Nothing where no grid is. Fog (floats of the class fog volume) of a synthesis is the
+/// mean over all blocks at a voxel, as the surface is, in the band too. @param map  by blocks
 std::vector<GridPtr> transferBeyondBand(const SourceMap& map, const std::vector<const LevelSet*>& exemplars,
                                         const openvdb::FloatGrid& result, std::vector<GridPtr> into,
                                         const RunContext& ctx = {});

@@ -221,8 +221,8 @@ LevelSet loaded(const std::string& path, const ModelOptions& options, const RunC
     if (options.carry) {
         // All except the one that became the model; fog that a level set was made of comes along as fog.
         const GridPtr used = pickedGrid(path, grids, read);
-        const bool fog = options.iso && used->getGridClass() != openvdb::GRID_LEVEL_SET &&
-                         used->getName() != kSurfaceName;
+        const bool fog =
+            options.iso && used->getGridClass() != openvdb::GRID_LEVEL_SET && used->getName() != kSurfaceName;
         std::copy_if(grids.begin(), grids.end(), std::back_inserter(model.attributes),
                      [&](const GridPtr& grid) { return fog || grid != used; });
     }

@@ -25,6 +25,8 @@ def text(value):
 
 
 def parameter(name, label, kind, default, says, low=None, high=None, choices=()):
+    if choices:
+        default = [token for token, _ in choices].index(default)  # dialog scripts count a menu's entries
     lines = [f"name    {text(name)}", f"label   {text(label)}", f"type    {kind}", f"default {{ {text(default)} }}"]
     if says:
         lines.append(f"help    {text(says)}")
@@ -51,7 +53,8 @@ def parameters(one):
         rows.append((role.parm, role.label + " File", "file", "", role.says + (", where no SOP is connected" if role.wired else ""), None, None, ()))
     for option in one.options:
         default = int(option.default) if option.kind == "flag" else option.default
-        choices = [(choice, choice or "automatic") for choice in option.choices]
+        choices = [(choice or methods.AUTOMATIC, choice or methods.AUTOMATIC) for choice in option.choices]
+        default = default or methods.AUTOMATIC if choices else default
         rows.append((option.parm, option.label, KINDS[option.kind], default, option.says, option.low, option.high, choices))
     rows.append(("vdbsynth_program", "Program", "file", "", "path of vdb_synth; empty: VDB_SYNTH of the environment, else PATH", None, None, ()))
     rows.append(("vdbsynth_cache", "Cache", "file", CACHE, "folder of results; a run with equal inputs and options is not repeated", None, None, ()))

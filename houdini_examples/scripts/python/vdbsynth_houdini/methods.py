@@ -1,5 +1,7 @@
 """What the assets offer: the methods, their inputs and the options that are used most. Plain Python, without hou."""
 
+AUTOMATIC = "automatic"  # the token of a menu for the program's own choice: tokens must not be empty
+
 
 class Option:
     """One option of the program. kind: real, whole, text, file, flag or choice; "" or 0 as the default leaves the choice to the program."""
@@ -112,7 +114,7 @@ def options_of(one, values, extensions=()):
         if option.kind == "flag":
             if value:
                 options[option.name] = True
-        elif option.name == "seed" or value not in ("", 0, 0.0, None):
+        elif option.name == "seed" or value not in ("", AUTOMATIC, 0, 0.0, None):
             options[option.name] = round(value, 9) if option.kind == "real" else value
     resampled = {"compare": extensions[:1]}.get(one.command, extensions[-1:])
     if "vdb" in resampled:

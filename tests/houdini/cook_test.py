@@ -114,7 +114,7 @@ class Cook(unittest.TestCase):
         self.assertTrue(result.prims)
 
     def test_analogy_and_relief_order_of_inputs(self):
-        self.make("spikes", "plain.vdb", "textured.vdb", "--resolution", "32")
+        self.make("spikes", "plain.vdb", "textured.vdb", "--resolution", "64")
         plain, textured = (hou.Geometry(vdb=self.path(name)) for name in ("plain.vdb", "textured.vdb"))
         node = self.node("analogy", [hou.Geometry(CUBE, CLOCKWISE), plain, textured], resolution=24)
         self.cook("analogy", node)

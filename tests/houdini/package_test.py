@@ -254,6 +254,16 @@ class Assets(Folder):
         self.assertEqual(package["path"], "$VDBSYNTH_HOUDINI")
         self.assertEqual([key for entry in package["env"] for key in entry], ["VDBSYNTH_HOUDINI", "VDB_SYNTH"])
 
+    def test_zip_works_anywhere(self):
+        made = subprocess.run([str(ROOT / "tools" / "dev" / "houdini_package.sh"), self.path("package.zip")], check=True, capture_output=True, text=True)
+        shutil.unpack_archive(made.stdout.strip(), self.folder)
+        package = self.path("vdb_synth_houdini")
+        self.assertTrue(os.path.isfile(os.path.join(package, "otls", "vdbsynth_synth.hda", "INDEX__SECTION")))
+        script = "import vdbsynth_houdini.runs as r; print(r.tool.__file__)"
+        answer = subprocess.run([sys.executable, "-c", script], env={**os.environ, "PYTHONPATH": os.path.join(package, "scripts", "python")}, cwd="/",
+                                check=True, capture_output=True, text=True)
+        self.assertEqual(answer.stdout.strip(), os.path.join(package, "scripts", "python", "vdbsynth_tool.py"))
+
 
 if __name__ == "__main__":
     unittest.main()

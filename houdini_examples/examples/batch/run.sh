@@ -3,7 +3,7 @@
 # Usage: run.sh [FOLDER]   default: a new folder in the current one
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
-tool=${VDB_SYNTH:-vdb_synth}
+tool=$(realpath "$(command -v "${VDB_SYNTH:-vdb_synth}")")
 mkdir -p "${1:-batch_result}"
 cd "${1:-batch_result}"
 cp "$here/jobs.json" .

@@ -2,7 +2,7 @@
 # The pipeline of the synth example without Houdini.
 # Usage: run.sh [FOLDER]   default: a new folder in the current one
 set -euo pipefail
-tool=${VDB_SYNTH:-vdb_synth}
+tool=$(realpath "$(command -v "${VDB_SYNTH:-vdb_synth}")")
 mkdir -p "${1:-synth_result}"
 cd "${1:-synth_result}"
 "$tool" make sponge exemplar.vdb --resolution 32 --seed 1

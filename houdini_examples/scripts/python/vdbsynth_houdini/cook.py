@@ -129,7 +129,7 @@ def bring(geometry, outcome, one):
         geometry.clear()
         geometry.loadFromFile(outcome.path)  # Houdini's own readers of .vdb and .obj
     geometry.addAttrib(hou.attribType.Global, REPORT, "")
-    geometry.setGlobalAttribValue(REPORT, json.dumps(report))
+    geometry.setGlobalAttribValue(REPORT, json.dumps({**report, "messages": outcome.messages}))  # notes too: nothing is kept silent
 
 
 def bring_ply(geometry, path):

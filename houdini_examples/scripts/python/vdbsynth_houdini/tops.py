@@ -4,12 +4,14 @@ objects; no module of Houdini is imported.
 In the node's onGenerate callback, with a spare string parameter `jobs`:
 
     from vdbsynth_houdini import tops
-    return tops.generate(item_holder, self["jobs"].evaluateString())
+    tops.generate(item_holder, self["jobs"].evaluateString())
+    return pdg.result.Success
 
 In its onAddInternalDependencies callback:
 
     from vdbsynth_houdini import tops
-    return tops.add_dependencies(work_items)
+    tops.add_dependencies(dependency_holder, internal_items)
+    return pdg.result.Success
 """
 from . import batches
 
@@ -25,12 +27,10 @@ def generate(item_holder, jobs, program=""):
         item.setStringAttrib(AFTER, " ".join(step.after))
         for path in step.writes:
             item.addExpectedOutputFile(path, "file/geo", True)
-    return True
 
 
-def add_dependencies(work_items):
-    by_name = {item.stringAttribValue(STEP): item for item in work_items}
-    for item in work_items:
+def add_dependencies(dependency_holder, internal_items):
+    by_name = {item.stringAttribValue(STEP): item for item in internal_items}
+    for item in internal_items:
         for name in item.stringAttribValue(AFTER).split():
-            item.addDependency(by_name[name])
-    return True
+            dependency_holder.addDependency(item, by_name[name])

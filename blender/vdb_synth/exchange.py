@@ -4,7 +4,7 @@ import os
 import bpy
 import numpy as np
 
-from . import ply
+from . import vdbsynth_ply as ply
 
 SETTINGS = "vdb_synth"  # custom property of results: the run that made them, as JSON
 

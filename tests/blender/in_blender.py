@@ -105,7 +105,7 @@ def check_texture():
     assert red.mean() > 0.5, red.mean()
     # Colours go out again with the mesh.
     select(made)
-    from vdb_synth import exchange, ply
+    from vdb_synth import exchange, vdbsynth_ply as ply
     exchange.export_mesh(bpy.context, made, path("out.ply"))
     points, faces, attributes = ply.read_ply(path("out.ply"))
     assert len(points) == len(made.data.vertices) and ply.colours_of(attributes) is not None

@@ -10,7 +10,8 @@ try:
 except ImportError:
     np = None
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "blender" / "vdb_synth"))
+for folder in ("blender/vdb_synth", "python"):
+    sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / folder))
 import methods
 
 
@@ -35,7 +36,7 @@ class Methods(unittest.TestCase):
 @unittest.skipIf(np is None, "numpy is absent")
 class Ply(unittest.TestCase):
     def test_there_and_back(self):
-        import ply
+        import vdbsynth_ply as ply
         points = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.5]])
         colours = np.array([[0, 0, 0], [1, 0, 0], [0.5, 1, 0], [2, -1, 1]])
         for faces in ([(0, 1, 2, 3)], [(0, 1, 2), (0, 2, 3)], [(0, 1, 2), (0, 1, 2, 3), (1, 2, 3)], []):
@@ -52,7 +53,7 @@ class Ply(unittest.TestCase):
             self.assertIsNone(ply.colours_of(ply.read_ply(path)[2]))
 
     def test_what_the_program_writes(self):
-        import ply
+        import vdbsynth_ply as ply
         import subprocess
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "a.obj")

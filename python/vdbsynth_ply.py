@@ -1,4 +1,4 @@
-"""Triangles and quads with colours as binary .ply, for the way to the program and back. Needs numpy, which Blender brings; no bpy."""
+"""Triangles and quads with colours as binary .ply, for hosts on the way to the program and back. Needs numpy, which Blender and Houdini bring."""
 import numpy as np
 
 TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4", "double": "f8",

@@ -58,7 +58,7 @@ class Tool(unittest.TestCase):
 
     def test_progress_and_messages(self):
         self.run_tool("make", ["balls", "a.vdb"], [], {"resolution": 48})
-        job = tool.Job("synth", ["a.vdb"], ["b.vdb"], {"size": "2x,2x,2x"}, PROGRAM, self.folder)
+        job = tool.Job("synth", ["a.vdb"], ["b.vdb"], {"size": "2x,2x,2x", "draft": True}, PROGRAM, self.folder)
         stages = set()
         while not job.poll().done:
             stages.add(job.state.stage)

@@ -154,19 +154,21 @@ Placing placingOf(const LevelSet& rest, const LevelSet& posed, const PoseOptions
     if (const auto grid = restGridOf(posed, options.restGrid)) return placedByGrid(grid, posed);
     throw Error(ErrorCode::Unusable,
                 "the model at rest and the posed one are not both meshes, and the posed one has no grid of "
-                "vectors `" +
-                    options.restGrid + "` with the places of its voxels at rest");
+                "vectors \"" +
+                    options.restGrid + "\" with the places of its voxels at rest");
 }
 
-void sayUnknown(std::size_t unknown, std::size_t all, const PoseOptions& options, const RunContext& ctx) {
+void sayUnknown(std::size_t unknown, std::size_t all, const PoseOptions& options, bool byMesh,
+                const RunContext& ctx) {
     if (unknown == 0) return;
     message(
         ctx, MessageLevel::Warning,
         roundedText(100 * double(unknown) / double(std::max<std::size_t>(all, 1)), 3) +
-            " % of the voxels that the texture may reach have no place at rest, and keep the plain surface; "
-            "a grid `" +
-            options.restGrid + "` with a wider band, " + roundedText(double(options.reach) + 2, 3) +
-            " voxels a side, carries it there");
+            " % of the voxels that the texture may reach have no place at rest, and keep the plain "
+            "surface; " +
+            (byMesh ? "no face is near them: the mesh is open there; close its holes"
+                    : "a grid \"" + options.restGrid + "\" with a wider band, " +
+                          roundedText(double(options.reach) + 2, 3) + " voxels a side, carries it there"));
 }
 
 LevelSet posedLevelSet(const LevelSet& made, const LevelSet& rest, const LevelSet& posed,
@@ -199,7 +201,7 @@ LevelSet posedLevelSet(const LevelSet& made, const LevelSet& rest, const LevelSe
             fromVec(at) - Vec3d{double(source.corner.x), double(source.corner.y), double(source.corner.z)};
         return float(ratio) * sampleCubic(source.field, cast<float>(inField));
     });
-    sayUnknown(unknown, all, options, ctx);
+    sayUnknown(unknown, all, options, rest.source && posed.source, ctx);
     LevelSet result;
     const CloseOptions close{{}, options.halfWidth, kept, voxelSizeOf(*posed.grid), false};
     result.grid = levelSetFrom(closedBand(field, box.min, close, ctx), options.halfWidth, *posed.grid,

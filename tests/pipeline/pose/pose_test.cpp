@@ -171,6 +171,7 @@ TEST_CASE("poseModel: by a grid of rest positions, and what it does not reach is
     test::Said narrow;
     poseModel(made, {}, withRest(2), options, narrow.ctx);
     CHECK(narrow.warned("have no place at rest"));
+    CHECK(narrow.warned("a grid \"rest\" with a wider band"));
 }
 
 TEST_CASE("poseModel: what it refuses", "[pipeline][pose][error]") {
@@ -184,7 +185,7 @@ TEST_CASE("poseModel: what it refuses", "[pipeline][pose][error]") {
     bare.source = nullptr;
     const test::Thrown neither = test::thrownBy([&] { poseModel(made, rest, bare); });
     CHECK(neither.code == int(ErrorCode::Unusable));
-    CHECK(test::contains(neither.message, "`rest`"));
+    CHECK(test::contains(neither.message, "\"rest\""));
     PoseOptions options;
     options.reach = 65;
     CHECK(test::thrownBy([&] { poseModel(made, rest, rest, options); }).code ==

@@ -172,7 +172,7 @@ class Job:
 
 
 def run(command, inputs, outputs, options=None, program="", folder=None):
-    """Runs the program to its end. Returns the finished job; raises ToolError. ctrl-C cancels it and goes on up."""
+    """Runs the program to its end. Returns the finished job; raises ToolError. ctrl-C cancels it and is raised again."""
     job = Job(command, inputs, outputs, options, program, folder)
     try:
         job.wait()

@@ -1,4 +1,4 @@
-"""The operators: one for all methods. A timer looks after the program's process, so Blender goes on meanwhile."""
+"""The operators: one for all methods. A timer looks after the program's process, so Blender can be used meanwhile."""
 import json
 import os
 import shutil
@@ -9,7 +9,7 @@ import bpy
 from . import exchange, methods
 from .vdbsynth_tool import Job, ToolError
 
-running = {}  # the jobs that go on: window manager's only one at a time a method
+running = {}  # the jobs under way, one a method
 
 
 def preferences():

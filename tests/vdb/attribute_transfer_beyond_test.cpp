@@ -65,7 +65,8 @@ TEST_CASE("isBeyondBand: densities of an interior are, values on the band are no
     CHECK(isBeyondBand(tile, *levelSet));
 }
 
-TEST_CASE("transferAttributes: interiors come along whole, other grids on the band only", "[vdb][oracle]") {
+TEST_CASE("transferAttributes: interiors are transferred whole, other grids on the band only",
+          "[vdb][oracle]") {
     LevelSet exemplar;
     exemplar.grid = bandOver(IndexBox::fromSize({20, 20, 20}));
     exemplar.attributes = {placesIn("density", IndexBox::fromSize({20, 20, 20})),
@@ -95,7 +96,7 @@ TEST_CASE("transferBeyondBand: what is not active in the exemplar is not in the 
     CHECK(transferBeyondBand(shiftedMap(), {&exemplar}, *result, {}).empty());
 }
 
-TEST_CASE("noteBandOnly: one line for each grid whose interior cannot come along", "[vdb]") {
+TEST_CASE("noteBandOnly: one line for each grid whose interior cannot be transferred", "[vdb]") {
     LevelSet exemplar;
     exemplar.grid = bandOver(IndexBox::fromSize({20, 20, 20}));
     exemplar.attributes = {placesIn("density", IndexBox::fromSize({20, 20, 20})),

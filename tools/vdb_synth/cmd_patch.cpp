@@ -100,10 +100,7 @@ void report(Run& run, const PatchSource& source, const PatchSheet& sheet) {
                         " patches had fewer than four pairs and were not warped; a larger --limit-position "
                         "finds more");
     } else {
-        run.count("borders", {{"warped", result.borders.warps},
-                              {"shrunk", result.borders.shrunk},
-                              {"apart_before", result.borders.apartBefore},
-                              {"apart_after", result.borders.apartAfter}});
+        countBorders(run, result.borders);
     }
     message(run.context, MessageLevel::Note,
             std::to_string(result.patches) + " patches " + roundedText(result.patch, 4) + " wide, " +

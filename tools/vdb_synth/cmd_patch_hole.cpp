@@ -90,10 +90,7 @@ void report(Run& run, const PatchSource& sheet, const RepairedSheet& repaired) {
     run.count("patch", repair.patch);
     run.count("overlap", repair.overlap);
     run.count("seconds", {{"search", repair.search}, {"warp", repair.warp}, {"other", repair.other}});
-    run.count("borders", {{"warped", repair.borders.warps},
-                          {"shrunk", repair.borders.shrunk},
-                          {"apart_before", repair.borders.apartBefore},
-                          {"apart_after", repair.borders.apartAfter}});
+    countBorders(run, repair.borders);
     message(run.context, MessageLevel::Note,
             std::to_string(repair.patches) + (repair.patches == 1 ? " patch " : " patches ") +
                 roundedText(repair.patch, 4) + " wide in the hole; " + std::to_string(repair.kept.size()) +

@@ -92,10 +92,7 @@ void report(Run& run, const PatchSource& source, const PatchedModel& patched) {
     run.count("patch", result.patch);
     run.count("overlap", result.overlap);
     run.count("seconds", {{"search", result.search}, {"warp", result.warp}, {"other", result.other}});
-    run.count("borders", {{"warped", result.borders.warps},
-                          {"shrunk", result.borders.shrunk},
-                          {"apart_before", result.borders.apartBefore},
-                          {"apart_after", result.borders.apartAfter}});
+    countBorders(run, result.borders);
     run.count("bend", {{"folded_share", result.bend.folded},
                        {"most", result.bend.most},
                        {"dropped", result.bend.dropped},

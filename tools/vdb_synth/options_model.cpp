@@ -120,8 +120,7 @@ std::vector<Option> inputTable() {
         flag("half")
             .in(Group::Output)
             .sets({"halfFloats"})
-            .says(
-                "write the level set and the grids that come along at half precision; source maps stay exact")
+            .says("write the level set and the transferred grids at half precision; source maps stay exact")
             .takenBy({"convert", "crop", "synth", "analogy", "repeat", "make", "relief"}),
     };
 }

@@ -21,6 +21,13 @@ PatchSourceOptions patchSourceOptions(const Run& run) {
     return options;
 }
 
+void countBorders(Run& run, const BorderStats& borders) {
+    run.count("borders", {{"warped", borders.warps},
+                          {"shrunk", borders.shrunk},
+                          {"apart_before", borders.apartBefore},
+                          {"apart_after", borders.apartAfter}});
+}
+
 void writeSheetModels(Run& run, const std::vector<std::string>& paths, const PatchSource& source,
                       const PatchSheet& sheet, const PointCloud& cloud) {
     const Arguments& arguments = run.arguments;

@@ -16,6 +16,9 @@ void patchOntoModel(Run& run);
 /// and as repairSheet
 void repairWithPatches(Run& run);
 
+/// What was warped at borders, for the report.
+void countBorders(Run& run, const BorderStats& borders);
+
 /// Writes a sheet's level set, or what writeModel makes of it, with what its points carry.
 /// @throw Error as sheetLevelSet, writeModel
 void writeSheetModels(Run& run, const std::vector<std::string>& paths, const PatchSource& source,

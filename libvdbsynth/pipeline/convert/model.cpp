@@ -219,7 +219,7 @@ LevelSet loaded(const std::string& path, const ModelOptions& options, const RunC
     if (options.unitScale != 1) model.grid = inUnit(*model.grid, options.unitScale);
     model = atVoxelSize(path, model, options, ctx);
     if (options.carry) {
-        // All except the one that became the model; fog that a level set was made of comes along as fog.
+        // All except the one that became the model; fog that a level set was made of stays among them.
         const GridPtr used = pickedGrid(path, grids, read);
         const bool fog =
             options.iso && used->getGridClass() != openvdb::GRID_LEVEL_SET && used->getName() != kSurfaceName;

@@ -113,9 +113,9 @@ void writeOne(const LevelSet& model, const std::string& path, const std::string&
     if (extensionOf(path) == "vdb") {
         for (const GridPtr& grid : model.attributes)
             if (grid->getName() == options.name)
-                throw Error(
-                    ErrorCode::InvalidOption,
-                    "`name` " + options.name + ": a grid of that name comes along; give another name");
+                throw Error(ErrorCode::InvalidOption,
+                            "`name` " + options.name +
+                                ": a grid of that name is transferred as well; give another name");
         std::vector<GridPtr> grids{asWritten(model.grid, options.name, options.half)};
         for (const GridPtr& grid : model.attributes) grids.push_back(asWritten(grid, "", options.half));
         grids.insert(grids.end(), options.extraGrids.begin(), options.extraGrids.end());

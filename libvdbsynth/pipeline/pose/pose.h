@@ -19,8 +19,9 @@ void validate(const PoseOptions& options);
 /// What was made of a surface at rest, carried to another pose of that surface: a texture stays where it is
 /// on the surface, frame after frame. Distances are read at the places at rest (geometry/rest_map.h, or the
 /// posed model's own grid of rest positions, by trilinear values) by cubic polynomials and the band is
-/// rebuilt. In the pose at rest the result comes back within 0.1 voxel. Attributes come along, vectors with a
-/// direction are turned (not by a grid of rest positions: they are left as they are, a warning says so).
+/// rebuilt. In the pose at rest the result comes back within 0.1 voxel. Attributes are transferred, vectors
+/// with a direction are turned (not by a grid of rest positions: they are left as they are, a warning says
+/// so).
 ///
 /// Of meshes `rest` and `posed` need LevelSet::source, of the same faces. A posed level set without one needs
 /// the grid of rest positions among its attributes, as far around its surface as `reach` plus the half-width:

@@ -113,7 +113,7 @@ TEST_CASE("poseModel: a rigid motion moves the result as it moves the mesh", "[p
     CHECK(worstAgainst(poseModel(made, rest, posed, options), motion) < 0.2);
 }
 
-TEST_CASE("poseModel: attributes come along, directions are turned", "[pipeline][pose]") {
+TEST_CASE("poseModel: attributes are transferred, directions are turned", "[pipeline][pose]") {
     const Motion motion{0.8, 0.6, {4.3, -2.6, 1.2}};
     LevelSet made = bumpyBall();
     auto height = openvdb::FloatGrid::create(0);

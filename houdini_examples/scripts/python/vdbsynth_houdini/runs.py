@@ -78,7 +78,7 @@ def cache_key(request):
 
 def run(request, cache, progress=None, wait=0.1):
     """Runs the program, or takes the result of an earlier run from the folder `cache`. progress(stage, fraction) is called every `wait` seconds; when it
-    raises, the program is stopped and the exception goes on, which is how hosts cancel. Raises ToolError."""
+    raises, the program is stopped and the exception is raised again, which is how hosts cancel. Raises ToolError."""
     os.makedirs(cache, exist_ok=True)
     key = cache_key(request)
     result, record = os.path.join(cache, f"{key}.{request.extension}"), os.path.join(cache, f"{key}.record")

@@ -11,7 +11,7 @@ struct VolumeAnalogyOptions {
     int components = 16;  ///< principal axes that features are compared along, 4..256
     /// At level l a source that continues a neighbour's copy is preferred if its feature distance is at most
     /// 1 + this * 2^-l times the nearest one's [ashikhmin2001; hertzmann2001, 3.2]. 0..100
-    double coherence = 0.5;
+    double coherence = 1;
     /// Of the approximate search: a source's squared feature distance is at most 1 + epsilon times the least;
     /// 0..100; 0: exact.
     double epsilon = 4;

@@ -26,13 +26,13 @@ struct Made {
     VoxelTable table;
     std::vector<Frame> frame;
     std::vector<AnalogyRow> source;  // pair -1: none
-    std::vector<Index3> sourceVoxel;
+    std::vector<Vec3f> sourcePlace;
     std::vector<Frame> sourceFrame;
 };
 
 // The target at one level: an assignment of a source row to every voxel that has to be synthesised.
 // Between two waves:
-// - mSource[i] is a row of the training, or -1 as long as none was found for voxel i of mVoxels;
+// - mSource[i] is a position of a pair, or none as long as none was found for voxel i of mVoxels;
 // - mDistance is the field as synthesised so far, full or empty (-kFar, kFar) where nothing has to be, and
 //   mDensity is densityField of it;
 // - mChanged[i] and mComputed[i] are the waves (counted by mNow) in which voxel i last got another source and
@@ -88,11 +88,11 @@ public:
         Made result;
         result.distance = voted();
         result.density = densityField(result.distance, mContext);
-        for (std::int32_t row : mSource) {
-            const AnalogyRow source = row < 0 ? AnalogyRow{} : mTraining.row(row);
-            result.source.push_back(source);
-            result.sourceVoxel.push_back(row < 0 ? Index3{} : mTraining.voxel(source));
-            result.sourceFrame.push_back(row < 0 ? Frame{} : mTraining.frame(source));
+        for (const AnalogySource& source : mSource) {
+            const AnalogyRow row = source.row < 0 ? AnalogyRow{} : mTraining.row(source.row);
+            result.source.push_back(row);
+            result.sourcePlace.push_back(source.row < 0 ? Vec3f{} : mTraining.placeOf(source));
+            result.sourceFrame.push_back(source.row < 0 ? Frame{} : mTraining.frame(row));
         }
         result.frame = mVoxels.frame;
         result.table = mVoxels.table;
@@ -103,10 +103,10 @@ public:
     ElementSources sources() const {
         std::vector<Source> all(mSource.size());
         each(1024, [&](std::size_t i) {
-            const AnalogyRow& row = mTraining.row(mSource[i]);
+            const AnalogyRow& row = mTraining.row(mSource[i].row);
             const Frame& frame = mTraining.frame(row);
             all[i].exemplar = row.pair;
-            all[i].position = cast<double>(atDepth(i, row));
+            all[i].position = cast<double>(atDepth(i, mSource[i]));
             all[i].rotation = rotationBetween(frame, mVoxels.frame[i]);
         });
         ElementSources result;
@@ -139,7 +139,7 @@ private:
         });
         mDensity = densityField(mDistance, mContext);
         const std::size_t count = mVoxels.table.size();
-        mSource.assign(count, -1);
+        mSource.assign(count, {});
         mCoherent.assign(count, 0);
         mChanged.assign(count, 0);
         mComputed.assign(count, 0);
@@ -153,11 +153,12 @@ private:
     // coarsest level begins with patches of the textured model, placed side by side without regard to seams.
     void layPatches() {
         const PatchLayout layout(mVoxels, mPlain, mTraining, mContext);
-        each(1024, [&](std::size_t i) { mSource[i] = layout.rowOf(i); });
+        each(1024, [&](std::size_t i) { mSource[i] = layout.sourceOf(i); });
         std::vector<float> value(mSource.size());
         each(1024, [&](std::size_t i) {
-            value[i] = mSource[i] < 0 ? mDistance.inside(mVoxels.table[i])
-                                      : std::clamp(readThrough(i, mSource[i], mVoxels.table[i]), -kFar, kFar);
+            value[i] = mSource[i].row < 0
+                           ? mDistance.inside(mVoxels.table[i])
+                           : std::clamp(readThrough(i, mSource[i], mVoxels.table[i]), -kFar, kFar);
         });
         for (std::size_t i = 0; i < value.size(); ++i) {
             const float density = densityOf(value[i]);
@@ -168,16 +169,18 @@ private:
 
     // The source of the coarser level's voxel, offset from its middle as this voxel
     // is from the coarser voxel's.
-    std::int32_t inherited(std::size_t i) const {
+    AnalogySource inherited(std::size_t i) const {
         const Index3& v = mVoxels.table[i];
         const Index3 parent{v.x >> 1, v.y >> 1, v.z >> 1};
         const std::int32_t c = mCoarser->table.find(parent);
-        if (c < 0 || mCoarser->source[std::size_t(c)].pair < 0) return -1;
+        if (c < 0 || mCoarser->source[std::size_t(c)].pair < 0) return {};
         const Vec3f middle = toFinest(middleOf(parent), 1);
-        const Vec3f from = toFinest(middleOf(mCoarser->sourceVoxel[std::size_t(c)]), 1) +
+        const Vec3f from = toFinest(mCoarser->sourcePlace[std::size_t(c)], 1) +
                            rotated(mCoarser->frame[std::size_t(c)], mCoarser->sourceFrame[std::size_t(c)],
                                    middleOf(v) - middle);
-        return mTraining.find(mCoarser->source[std::size_t(c)].pair, nearestVoxel(from));
+        const AnalogyRow& row = mCoarser->source[std::size_t(c)];
+        const float depth = mPlain.inside(v) - mTraining.plainThrough(row, from);
+        return mTraining.sourceAt(row.pair, from + mCoarser->sourceFrame[std::size_t(c)].n * depth);
     }
 
     // Feature distances of the sources and of the nearest rows.
@@ -188,9 +191,9 @@ private:
             std::vector<float> made(mShape.made()), feature(mTraining.reduced().count());
             for (std::size_t k = begin; k < end; ++k) {
                 const std::size_t i = k * mSource.size() / count;
-                if (mSource[i] < 0) continue;
+                if (mSource[i].row < 0) continue;
                 featureOf(i, made, feature);
-                squared[k] = {mTraining.index().squaredTo(feature.data(), mSource[i]),
+                squared[k] = {mTraining.index().squaredTo(feature.data(), mSource[i].row),
                               mTraining.index().nearest(feature.data(), kOutside).squared};
             }
         });
@@ -203,9 +206,13 @@ private:
         stats.exactDistance = std::sqrt(exact / double(std::max<std::size_t>(count, 1)));
     }
 
+    Vec3f placeOf(std::size_t i) const {
+        return featurePlace(middleOf(mVoxels.table[i]), mVoxels.frame[i], mPlain.inside(mVoxels.table[i]),
+                            mOptions.aligned);
+    }
+
     void featureOf(std::size_t i, std::vector<float>& made, std::vector<float>& feature) const {
-        sampleMade(mShape, mDensity, middleOf(mVoxels.table[i]), mVoxels.frame[i], mVoxels.curvature[i],
-                   made.data());
+        sampleMade(mShape, mDensity, placeOf(i), mVoxels.frame[i], mVoxels.curvature[i], made.data());
         mTraining.reduced().addMade(made.data(), mRest.data() + i * feature.size(), feature.data());
     }
 
@@ -232,9 +239,9 @@ private:
         parallelFor(mContext, mVoxels.table.size(), 256, [&](std::size_t first, std::size_t last) {
             std::vector<float> rest(mShape.rest());
             for (std::size_t i = first; i < last; ++i) {
-                sampleRest(mShape, fields, middleOf(mVoxels.table[i]), mVoxels.frame[i], mVoxels.curvature[i],
-                           rest.data());
-                mTraining.reduced().ofRest(rest.data(), mPlain.inside(mVoxels.table[i]),
+                sampleRest(mShape, fields, placeOf(i), mVoxels.frame[i], mVoxels.curvature[i], rest.data());
+                mTraining.reduced().ofRest(rest.data(),
+                                           featureDepth(mPlain.inside(mVoxels.table[i]), mOptions.aligned),
                                            mRest.data() + i * count);
             }
         });
@@ -250,13 +257,13 @@ private:
             }
         });
         for (std::size_t k = 0; k < mFound.size(); ++k) {
-            if (mFound[k].row < 0) continue;
+            if (mFound[k].source.row < 0) continue;
             const std::uint32_t i = mOrder[first + k];
             mComputed[i] = mNow;
-            if (mSource[i] == mFound[k].row && !searched) continue;
+            if (mSource[i].row == mFound[k].source.row && !searched) continue;
             mCoherent[i] = mFound[k].coherent;
-            if (mSource[i] != mFound[k].row) mChanged[i] = mNow;
-            mSource[i] = mFound[k].row;
+            if (mSource[i].row != mFound[k].source.row) mChanged[i] = mNow;
+            mSource[i] = mFound[k].source;
             const float distance = std::clamp(mFound[k].distance, -kFar, kFar), density = densityOf(distance);
             mDistance.writeBox(mVoxels.table[i], {1, 1, 1}, &distance);
             mDensity.writeBox(mVoxels.table[i], {1, 1, 1}, &density);
@@ -275,7 +282,7 @@ private:
     }
 
     struct Found {
-        std::int32_t row = -1;
+        AnalogySource source;
         float distance = 0;
         char coherent = 0;
     };
@@ -283,68 +290,78 @@ private:
     Found match(std::uint32_t i, bool searched, std::vector<float>& made, std::vector<float>& feature) const {
         const FeatureIndex& index = mTraining.index();
         featureOf(i, made, feature);
-        FeatureMatch best = bestCandidate(i, feature.data());
+        const Candidate best = bestCandidate(i, feature.data());
         Found found;
-        found.row = best.row;
+        found.source = best.source;
         found.coherent = 1;
         // Later sweeps refine the first one's result; only voxels without a candidate search again.
-        if (searched || best.row < 0) {
+        if (searched || best.source.row < 0) {
             // The nearest row replaces a candidate that continues a neighbour only if
             // it is nearer by this factor.
             const float more = 1 + float(mOptions.coherence) / float(1 << mLevel);
-            const float bound = best.row < 0 ? kOutside : best.squared / (more * more);
+            const float bound = best.source.row < 0 ? kOutside : best.squared / (more * more);
             const FeatureMatch nearest = index.nearest(feature.data(), bound, float(mOptions.epsilon));
             if (nearest.row >= 0) {
-                found.row = nearest.row;
+                found.source = mTraining.featureSource(nearest.row);
                 found.coherent = 0;
             }
         }
-        found.distance = readThrough(i, found.row, mVoxels.table[i]);
+        found.distance = readThrough(i, found.source, mVoxels.table[i]);
         return found;
     }
 
+    struct Candidate {
+        AnalogySource source;
+        float squared = kOutside;
+    };
+
     // The nearest of the candidates that continue the voxel's own source and its neighbours'.
-    FeatureMatch bestCandidate(std::uint32_t i, const float* feature) const {
+    Candidate bestCandidate(std::uint32_t i, const float* feature) const {
         std::array<std::int32_t, 28> tried;
         std::size_t count = 0;
-        FeatureMatch best{-1, kOutside};
+        Candidate best;
+        const auto consider = [&](const AnalogySource& source) {
+            const auto end = tried.begin() + std::ptrdiff_t(count);
+            if (source.row < 0 || std::find(tried.begin(), end, source.row) != end) return;
+            tried[count++] = source.row;
+            const float squared = mTraining.index().squaredTo(feature, source.row);
+            if (squared < best.squared || (squared == best.squared && source.row < best.source.row))
+                best = {source, squared};
+        };
+        consider(mSource[i]);
         const Index3& v = mVoxels.table[i];
         forEachVoxel(IndexBox{v, v}.expanded(1), [&](const Index3& p) {
-            const std::int32_t j = p == v ? std::int32_t(i) : mVoxels.table.find(p);
-            if (j < 0 || mSource[std::size_t(j)] < 0) return;
-            std::int32_t row = mSource[std::size_t(j)];
-            if (p != v) {
-                const AnalogyRow& source = mTraining.row(row);
-                const Vec3f from =
-                    middleOf(mTraining.voxel(source)) -
-                    rotated(mVoxels.frame[std::size_t(j)], mTraining.frame(source), middleOf(p - v));
-                row = mTraining.find(source.pair, nearestVoxel(from));
-                if (row < 0) return;
-            }
-            if (std::find(tried.begin(), tried.begin() + std::ptrdiff_t(count), row) !=
-                tried.begin() + std::ptrdiff_t(count))
-                return;
-            tried[count++] = row;
-            const float squared = mTraining.index().squaredTo(feature, row);
-            if (squared < best.squared || (squared == best.squared && row < best.row)) best = {row, squared};
+            const std::int32_t j = p == v ? -1 : mVoxels.table.find(p);
+            if (j >= 0 && mSource[std::size_t(j)].row >= 0) consider(continued(i, std::size_t(j), p - v));
         });
         return best;
     }
 
+    // The source of a voxel's neighbour j, moved to the voxel along the surface and to the voxel's own depth.
+    AnalogySource continued(std::size_t i, std::size_t j, const Index3& step) const {
+        const AnalogyRow& row = mTraining.row(mSource[j].row);
+        const Frame& frame = mTraining.frame(row);
+        Vec3f from = mTraining.placeOf(mSource[j]) - rotated(mVoxels.frame[j], frame, middleOf(step));
+        from = from + frame.n * (mPlain.inside(mVoxels.table[i]) - mTraining.plainThrough(row, from));
+        return mTraining.sourceAt(row.pair, from);
+    }
+
     // The value that a voxel's source proposes for a position: the textured distance, offset from the source
     // in its frame as the position is from the voxel; the source is first moved to the voxel's own depth.
-    float readThrough(std::size_t i, std::int32_t row, const Index3& place) const {
-        const AnalogyRow& source = mTraining.row(row);
-        return sampleTrilinear(mTraining.textured(source),
-                               atDepth(i, source) + rotated(mVoxels.frame[i], mTraining.frame(source),
-                                                            middleOf(place - mVoxels.table[i])));
+    float readThrough(std::size_t i, const AnalogySource& source, const Index3& place) const {
+        const AnalogyRow& row = mTraining.row(source.row);
+        return sampleCubic(mTraining.textured(row),
+                           atDepth(i, source) + rotated(mVoxels.frame[i], mTraining.frame(row),
+                                                        middleOf(place - mVoxels.table[i])));
     }
 
     // A source moved along its normal to the voxel's own depth.
-    Vec3f atDepth(std::size_t i, const AnalogyRow& source) const {
+    Vec3f atDepth(std::size_t i, const AnalogySource& source) const {
+        const AnalogyRow& row = mTraining.row(source.row);
+        const Vec3f place = mTraining.placeOf(source);
         const float depth =
-            std::clamp(mPlain.inside(mVoxels.table[i]) - mTraining.plainAt(source), -1.f, 1.f);
-        return middleOf(mTraining.voxel(source)) + mTraining.frame(source).n * depth;
+            std::clamp(mPlain.inside(mVoxels.table[i]) - mTraining.plainThrough(row, place), -1.f, 1.f);
+        return place + mTraining.frame(row).n * depth;
     }
 
     // Means of the proposals of a voxel and its neighbours.
@@ -355,7 +372,7 @@ private:
             float sum = 0, weights = 0;
             forEachVoxel(IndexBox{v, v}.expanded(1), [&](const Index3& p) {
                 const std::int32_t j = mVoxels.table.find(p);
-                if (j < 0 || mSource[std::size_t(j)] < 0) return;
+                if (j < 0 || mSource[std::size_t(j)].row < 0) return;
                 const Index3 offset = p - v;
                 const int squared = offset.x * offset.x + offset.y * offset.y + offset.z * offset.z;
                 const float weight = 1 / float(1 + squared);
@@ -381,7 +398,7 @@ private:
     int mLevel;
     AnalogyVoxels mVoxels;
     BrickField mDistance, mDensity;  // of the field being synthesised
-    std::vector<std::int32_t> mSource;
+    std::vector<AnalogySource> mSource;
     std::vector<char> mCoherent;
     std::uint32_t mNow = 0;                          // waves so far
     std::vector<std::uint32_t> mChanged, mComputed;  // the wave in which each voxel last did or was

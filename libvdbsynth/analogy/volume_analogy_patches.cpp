@@ -30,7 +30,7 @@ PatchLayout::PatchLayout(const AnalogyVoxels& voxels, const BrickField& plain,
         if (mPlaced[i].pair < 0) grow(i, seeds[std::size_t(key % seeds.size())]);
 }
 
-std::int32_t PatchLayout::rowOf(std::size_t i) const {
+AnalogySource PatchLayout::sourceOf(std::size_t i) const {
     const Index3& v = mVoxels.table[i];
     const float depth = mPlain.inside(v);
     const Vec3f foot = middleOf(v) - mVoxels.frame[i].n * depth;
@@ -45,14 +45,14 @@ std::int32_t PatchLayout::rowOf(std::size_t i) const {
         best = dot(offset, offset);
         nearest = j;
     });
-    if (nearest < 0) return -1;
+    if (nearest < 0) return {};
     const Placed& placed = mPlaced[std::size_t(nearest)];
     const Frame& frame = mTraining.frame(mTraining.row(placed.row));
     const Vec3f beside = rotated(mVoxels.frame[std::size_t(nearest)], frame,
                                  foot - middleOf(mVoxels.table[std::size_t(nearest)]));
     const Vec3f at = placed.at + (beside - frame.n * dot(frame.n, beside)) +
                      frame.n * (depth - mTraining.plainAt(mTraining.row(placed.row)));
-    return mTraining.find(placed.pair, nearestVoxel(at));
+    return mTraining.sourceAt(placed.pair, at);
 }
 
 bool PatchLayout::onSurface(std::size_t i) const {

@@ -4,6 +4,7 @@
 #include "libvdbsynth/grid/field_sampling.h"
 #include "libvdbsynth/search/feature_index.h"
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -26,6 +27,17 @@ inline Index3 nearestVoxel(const Vec3f& p) {
     return {round(p.x), round(p.y), round(p.z)};
 }
 
+/// Where the feature of a voxel is sampled: from a place near it, moved along its normal to the nearest whole
+/// depth. Depths of a flat pair's voxels have one fraction, a curved target's all; features at unlike
+/// fractions would differ by more than a shallow texture does, and lines of equal depth would show in the
+/// result.
+inline Vec3f featurePlace(const Vec3f& place, const Frame& frame, float depth, bool aligned) {
+    return aligned ? place + frame.n * (std::round(depth) - depth) : place;
+}
+inline float featureDepth(float depth, bool aligned) {
+    return aligned ? std::round(depth) : depth;
+}
+
 /// One pair at all levels.
 struct PairLevels {
     AnalogyPyramid plain, textured;
@@ -34,6 +46,14 @@ struct PairLevels {
 /// A voxel of a pair that may be copied.
 struct AnalogyRow {
     std::int32_t pair = -1, voxel = -1;
+};
+
+/// A position of a pair: the row of the nearest voxel, and the offset from there. Sources of neighbouring
+/// voxels that continue each other stay a whole: rounded to voxels, each would be off by its own half voxel,
+/// and a texture a few voxels fine would blur away.
+struct AnalogySource {
+    std::int32_t row = -1;  ///< -1: none
+    Vec3f offset{0, 0, 0};  ///< [voxels]
 };
 
 /// The pairs at one level: every voxel that may be copied, with its feature.
@@ -66,6 +86,18 @@ public:
         const std::int32_t voxel = mVoxels[std::size_t(pair)].table.find(p);
         return voxel < 0 ? -1 : mFirst[std::size_t(pair)] + voxel;
     }
+    /// The source at a position of a pair; none if it may not be copied.
+    AnalogySource sourceAt(std::int32_t pair, const Vec3f& at) const {
+        const Index3 nearest = nearestVoxel(at);
+        return {find(pair, nearest), at - middleOf(nearest)};
+    }
+    Vec3f placeOf(const AnalogySource& source) const {
+        return middleOf(voxel(row(source.row))) + source.offset;
+    }
+    /// Where the feature of a row is sampled, beside its voxel by up to half a voxel along the surface: as on
+    /// a target, whose voxels lie anywhere relative to the pair's. Features in the middle of all voxels are
+    /// sharper than any between them, and on a target the plainest would be the most similar.
+    AnalogySource featureSource(std::int32_t r) const;
     /// Half the distance that a patch can extend from the middle of a pair. [voxels]
     int patchReach(std::int32_t pair) const;
 
@@ -83,6 +115,7 @@ private:
     const std::vector<PairLevels>& mLevels;
     int mLevel;
     FeatureShape mShape;
+    bool mAligned;
     DepthClasses mDepths;
     std::vector<AnalogyRow> mRows;
     std::vector<std::int32_t> mFirst;    // row of each pair's first voxel
@@ -104,8 +137,8 @@ public:
     PatchLayout(const AnalogyVoxels& voxels, const BrickField& plain, const AnalogyTraining& training,
                 const RunContext& ctx);
 
-    /// The initial row of voxel i, negative if no patch covers it.
-    std::int32_t rowOf(std::size_t i) const;
+    /// The initial source of voxel i; none if no patch covers it.
+    AnalogySource sourceOf(std::size_t i) const;
 
 private:
     struct Placed {

@@ -1,6 +1,7 @@
 #include "libvdbsynth/analogy/volume_analogy_steps.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/hash.h"
 #include "libvdbsynth/base/parallel.h"
 
 #include <algorithm>
@@ -17,7 +18,7 @@ constexpr double kShare = 0.9999;       // of their variance
 AnalogyTraining::AnalogyTraining(const std::vector<AnalogyPair>& pairs, const std::vector<PairLevels>& levels,
                                  int level, const FeatureShape& shape, const VolumeAnalogyOptions& options,
                                  const RunContext& ctx)
-    : mLevels(levels), mLevel(level), mShape(shape), mDepths(shape.half) {
+    : mLevels(levels), mLevel(level), mShape(shape), mAligned(options.aligned), mDepths(shape.half) {
     for (std::size_t p = 0; p < pairs.size(); ++p) addDepths(pairs[p], p);
     mDepths.finish();
     for (std::size_t p = 0; p < pairs.size(); ++p) addRows(pairs[p], p, options, ctx);
@@ -27,6 +28,19 @@ AnalogyTraining::AnalogyTraining(const std::vector<AnalogyPair>& pairs, const st
                                              std::to_string(level + 1) +
                                              "; use fewer `levels`, or a larger or finer pair");
     learn(options, ctx);
+}
+
+AnalogySource AnalogyTraining::featureSource(std::int32_t r) const {
+    constexpr std::uint64_t kPlacePurpose = 0x666561747572;
+    if (!mAligned) return {r, {0, 0, 0}};
+    const AnalogyRow& of = row(r);
+    const Index3& at = voxel(of);
+    const std::uint64_t key = hash64(&at, sizeof at, kPlacePurpose);
+    const auto share = [](std::uint64_t bits) { return float(bits & 0xffff) / 65536.f - 0.5f; };
+    const Frame& axes = frame(of);
+    const Vec3f beside = axes.t * share(key) + axes.b * share(key >> 16);
+    const Vec3f place = middleOf(at) + beside;
+    return {r, featurePlace(place, axes, plainThrough(of, place), true) - middleOf(at)};
 }
 
 int AnalogyTraining::patchReach(std::int32_t pair) const {
@@ -86,7 +100,7 @@ void AnalogyTraining::sample(std::size_t r, float* out) const {
     const AnalogyRow& row = mRows[r];
     const PairLevels& of = mLevels[std::size_t(row.pair)];
     const std::size_t l = std::size_t(mLevel);
-    const Vec3f at = middleOf(voxel(row));
+    const Vec3f at = placeOf(featureSource(std::int32_t(r)));
     const Curvature& curvature = mVoxels[std::size_t(row.pair)].curvature[std::size_t(row.voxel)];
     sampleMade(mShape, of.textured.density[l], at, frame(row), curvature, out);
     FeatureFields fields{&of.plain.density[l], nullptr, nullptr};
@@ -111,7 +125,8 @@ void AnalogyTraining::learn(const VolumeAnalogyOptions& options, const RunContex
         std::vector<float> feature(size), rest(count);
         for (std::size_t r = begin; r < end; ++r) {
             sample(r, feature.data());
-            mReduced.ofRest(feature.data() + mShape.made(), plainAt(mRows[r]), rest.data());
+            mReduced.ofRest(feature.data() + mShape.made(), featureDepth(plainAt(mRows[r]), mAligned),
+                            rest.data());
             mReduced.addMade(feature.data(), rest.data(), features.data() + r * count);
         }
     });

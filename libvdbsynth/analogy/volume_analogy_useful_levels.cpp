@@ -1,5 +1,6 @@
 #include "libvdbsynth/analogy/analogy_level.h"
 #include "libvdbsynth/analogy/volume_analogy.h"
+#include "libvdbsynth/grid/pyramid.h"
 
 #include <algorithm>
 #include <array>
@@ -8,18 +9,21 @@
 namespace vdbsynth {
 namespace {
 
-// Volume, in voxels of the finest level, that is solid at one level but not at the finest.
-double changedBy(const AnalogyPyramid& model, int level) {
-    const BrickField &fine = model.distance.front(), &coarse = model.distance[std::size_t(level)];
+// Volume, in voxels of the finest level, that is solid at the finest level but not where a level is read
+// between its voxels, or the other way round. A relief of a fraction of a voxel is still there.
+double changedBy(const AnalogyPyramid& model, int level, const RunContext& ctx) {
+    const BrickField& fine = model.distance.front();
     const Index3 size = fine.box().size();
-    std::vector<float> row(std::size_t(size.z)), above(std::size_t(coarse.box().size().z));
+    BrickField read = model.distance[std::size_t(level)];
+    for (int l = level - 1; l >= 0; --l)
+        read = doubled(read, model.distance[std::size_t(l)].box().size(), ctx);
+    std::vector<float> row(std::size_t(size.y) * std::size_t(size.z)), above(row.size());
     double sum = 0;
-    for (int x = 0; x < size.x; ++x)
-        for (int y = 0; y < size.y; ++y) {
-            fine.readBox({x, y, 0}, {1, 1, size.z}, row.data());
-            coarse.readBox({x >> level, y >> level, 0}, {1, 1, int(above.size())}, above.data());
-            for (std::size_t z = 0; z < row.size(); ++z) sum += (row[z] < 0) != (above[z >> level] < 0);
-        }
+    for (int x = 0; x < size.x; ++x) {
+        fine.readBox({x, 0, 0}, {1, size.y, size.z}, row.data());
+        read.readBox({x, 0, 0}, {1, size.y, size.z}, above.data());
+        for (std::size_t i = 0; i < row.size(); ++i) sum += (row[i] < 0) != (above[i] < 0);
+    }
     return sum;
 }
 
@@ -47,7 +51,7 @@ int usefulLevels(const std::vector<AnalogyPair>& pairs, const RunContext& ctx) {
                              textured = analogyPyramid(*pair.textured, kMost, ctx);
         texture += textureOf(*pair.plain, *pair.textured);
         for (int l = 1; l < kMost; ++l)
-            lost[std::size_t(l)] += std::max(0.0, changedBy(textured, l) - changedBy(plain, l));
+            lost[std::size_t(l)] += std::max(0.0, changedBy(textured, l, ctx) - changedBy(plain, l, ctx));
     }
     const auto held = [&](int level) { return 1 - lost[std::size_t(level)] / std::max(texture, 1.0); };
     const auto largeEnough = [&](int level) {

@@ -93,6 +93,54 @@ struct Places {
     std::vector<double> x, y;
 };
 
+// Plates in rows like roof tiles: each lies along x, is thinnest at its root, which the tip of the plate
+// behind it covers, and ends in a rounded tip with a steep edge.
+class Scales {
+public:
+    Scales(int resolution, double wanted, std::uint64_t seed)
+        : mColumns(std::max(2, int(std::lround(resolution / wanted)))),
+          // An even number of rows, so that those half a plate apart meet where the pattern begins again.
+          mRows(2 * std::max(2, int(std::lround(resolution / (1.5 * wanted))))),
+          mWidth(double(resolution) / mColumns),
+          mStep(double(resolution) / mRows),
+          mSeed(seed) {}
+
+    // From the plates' surfaces; z counts from the plain one.
+    double distance(double x, double y, double z) const {
+        const int row = int(std::floor(x / mStep));
+        double nearest = z;
+        for (int r = row - 3; r <= row + 1; ++r) {
+            const double shift = r % 2 ? 0.5 : 0.0;
+            const int column = int(std::floor(y / mWidth - shift));
+            for (int c = column - 1; c <= column + 1; ++c)
+                nearest = std::min(nearest, plate(r, c, {x - r * mStep, y - (c + 0.5 + shift) * mWidth, z}));
+        }
+        return nearest;
+    }
+
+private:
+    static constexpr double kLength = 2.1;  // [rows] of a plate
+
+    // Distance to one plate: p.x along it from its root, p.y beside its middle.
+    double plate(int row, int column, Vec3d p) const {
+        const int r = (row % mRows + mRows) % mRows, c = (column % mColumns + mColumns) % mColumns;
+        Random random(mSeed, std::uint64_t(r * mColumns + c), kPlacePurpose);
+        p.x -= mStep * random.uniform(-0.06, 0.06);
+        p.y -= mWidth * random.uniform(-0.03, 0.03);
+        const double longest = kLength * mStep, half = 0.56 * mWidth, tallest = 0.34 * mWidth;
+        // Sides run straight to the last half width, then close to an ellipse.
+        const double tip = std::min(half, 0.6 * longest), beside = p.y / half,
+                     past = std::max(0.0, (p.x - (longest - tip)) / tip);
+        const double edge = (std::sqrt(past * past + beside * beside) - 1) * tip;
+        const double top = tallest * (p.x / longest) * (1 - 0.35 * std::min(beside * beside, 1.0));
+        return std::max({p.z - top, edge, -p.x});
+    }
+
+    int mColumns, mRows;
+    double mWidth, mStep;
+    std::uint64_t mSeed;
+};
+
 // A slab that continues below, and a textured version of its top.
 AnalogyPairFields slab(const std::string& kind, int resolution, double feature, const RunContext& ctx) {
     const Places places(resolution, feature, ctx.seed);
@@ -120,15 +168,9 @@ AnalogyPairFields slab(const std::string& kind, int resolution, double feature, 
         };
     else if (kind == "hollow")
         textured = [=](const Vec3d& p) { return std::max(p.z - top, top - wall - p.z); };
-    else  // scales: each rises along x and overlaps the next
-        textured = [=](const Vec3d& p) {
-            double height = -1e9;
-            for (int back = 0; back < 2; ++back) {
-                const Vec3d offset = places.nearest({p.x - back * 0.45 * f, p.y, 0});
-                const double in = 0.62 * f - length(offset);
-                if (in > 0) height = std::max(height, 0.16 * f + 0.26 * (offset.x + back * 0.2 * f));
-            }
-            return p.z - top - std::max(height, 0.0);
+    else
+        textured = [scales = Scales(resolution, feature, ctx.seed), top](const Vec3d& p) {
+            return scales.distance(p.x, p.y, p.z - top);
         };
     return pairOf(domain, plain, textured, ctx);
 }

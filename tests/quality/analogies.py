@@ -21,6 +21,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 SAMPLES = pathlib.Path(os.environ.get("VDBSYNTH_SAMPLES", str(SOURCE.parent / "shared" / "data")))
 BAND = 12  # [voxels] half-width of what is measured
 APART = 2  # [spacings] from singularities that angles and spacings are taken at
+
 # name: (pair, target: a kind of `make` or a sample, its resolution, direction)
 ROWS = {
     "grooves-bunny": ("grooves", "meshes/bunny.off", 200, "axis:z"),
@@ -99,7 +100,7 @@ def angles(places, slope, direction, sigma, shape):
             field = np.zeros(shape, np.float32)
             np.add.at(field, at, slope[:, i] * slope[:, j])
             tensor[:, i, j] = tensor[:, j, i] = ndimage.gaussian_filter(field, sigma, truncate=2.5)[at]
-# The line runs along what is at right angles to the strongest change, within the surface.
+    # The line runs along what is at right angles to the strongest change, within the surface.
     strongest = np.linalg.eigh(tensor)[1][:, :, 2]
     across = np.abs((strongest * direction).sum(axis=1))
     return np.degrees(np.arcsin(np.clip(across, 0, 1))), np.trace(tensor, axis1=1, axis2=2)
@@ -210,7 +211,7 @@ class Measurements:
         """Parts of the plain surface that the texture opens, or covers where sign is -1: how many were found, and a text."""
         of_pair, _, pair_plain, _, pair_places, inside = self.pair(0)
         sizes, middles = self.openings(sign * of_pair, pair_places, pair_plain.distance.shape)
-# An opening counts where its middle is, so that those that the pair's border cuts count in part, as they should.
+        # An opening counts where its middle is, so that those that the pair's border cuts count in part, as they should.
         corners = inside + np.array([[8], [-8]])
         within = lambda at: np.all((at >= corners[0]) & (at <= corners[1]), axis=1)
         usual = np.median(sizes[within(middles)])
@@ -255,9 +256,12 @@ def main():
             print(f"{name:16} skipped: its sample is absent", flush=True)
             continue
         try:
-(measurements.blur if name in BLURS else measurements.run)(name, *row) except RuntimeError as error
-    : print(f "{name:16} failed: {error}", flush = True) failures
-      += 1 return 1 if failures else 0
+            (measurements.blur if name in BLURS else measurements.run)(name, *row)
+        except RuntimeError as error:
+            print(f"{name:16} failed: {error}", flush=True)
+            failures += 1
+    return 1 if failures else 0
 
-         if __name__
-         == "__main__" : sys.exit(main())
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -37,6 +37,9 @@ AnalogyOptions parseOptions(const Arguments& arguments) {
     synthesis.aligned = !arguments.has("naive");
     options.scale = arguments.real("scale");
     options.strength = arguments.real("strength");
+    const std::string thin = arguments.text("thin");
+    options.thin = thin == "keep" ? ThinParts::Keep : thin == "as-is" ? ThinParts::AsIs : ThinParts::Scale;
+    options.draft = arguments.has("draft");
     options.halfWidth = float(arguments.real("half-width"));
     options.keepDirections = arguments.has("write-directions");
     for (const char* name : {"direction", "exemplar-direction"})
@@ -163,8 +166,9 @@ void reportFilter(Run& run, const FilterAnalogyStats& stats) {
 
 void filter(Run& run, const VolumeAnalogyOptions& synthesis) {
     const Arguments& arguments = run.arguments;
-    for (const char* name : {"scale", "strength", "mask", "carry", "source-map", "write-directions", "causal",
-                             "straight", "sweeps", "coherence", "coarse-samples", "adaptivity", "map-types"})
+    for (const char* name :
+         {"scale", "strength", "mask", "carry", "source-map", "write-directions", "causal", "straight",
+          "sweeps", "thin", "draft", "coherence", "coarse-samples", "adaptivity", "map-types"})
         if (arguments.has(name))
             throw Error(ErrorCode::InvalidOption,
                         "--" + std::string(name) + ": has no effect on scalar grids with --naive");

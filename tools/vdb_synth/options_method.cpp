@@ -91,7 +91,13 @@ std::vector<Option> synthTable() {
             .takenBy({"synth"}),
         flag("draft")
             .says("a quick look: search at half the resolution, distances are approximate")
-            .takenBy({"synth"}),
+            .takenBy({"synth", "analogy"})
+            .butFor("analogy",
+                    [](Option& o) {
+                        o.says(
+                            "a quick look: search at half the resolution, the texture is read at full "
+                            "resolution");
+                    }),
         whole("drift", "D", 0, 1 << 20)
             .measuredIn(Unit::Voxels)
             .says("how far a source may be from its destination along axes at 1x")
@@ -246,6 +252,14 @@ std::vector<Option> analogyTable() {
             .says("blend from B to the result")
             .initially("1")
             .takenBy({"analogy"}),
+        choice("thin", "HOW",
+               {{"scale", "the depth follows the part's thickness"},
+                {"keep", "such parts stay as they are"},
+                {"as-is", "the whole depth, which may cut them through"}})
+            .in(Group::Controls)
+            .says("where B is thinner than the texture is deep")
+            .initially("scale")
+            .takenBy({"analogy"}),
         whole("levels", "N", 1, 6)
             .says("levels of the pyramid")
             .otherwiseIs("as many as still resolve the texture, at most 3")
@@ -267,7 +281,7 @@ std::vector<Option> analogyTable() {
             .takenBy({"analogy"}),
         real("coherence", "K", 0, 100)
             .says("preference for sources that continue a neighbour's over the nearest match")
-            .initially("0.5")
+            .initially("1")
             .takenBy({"analogy"}),
         flag("exact")
             .says("search the exact nearest match of the reduced features (slower)")

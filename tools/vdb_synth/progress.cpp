@@ -4,11 +4,26 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <cstdio>
 
 #include <sys/resource.h>
 
 namespace vdbsynth::cli {
+
+namespace {
+
+// Of a stage, as fast as it went so far; nothing where that says little.
+std::string timeLeft(double seconds, double fraction) {
+    constexpr double kLeastSeconds = 1, kLeastShare = 0.05;
+    if (seconds < kLeastSeconds || fraction < kLeastShare || fraction >= 1) return "";
+    const long left = std::lround(seconds * (1 - fraction) / fraction);
+    if (left < 1) return "";
+    if (left < 100) return ", " + std::to_string(left) + " s left";
+    return ", " + std::to_string((left + 30) / 60) + " min left";
+}
+
+}  // namespace
 
 std::uint64_t peakMemory() {
     rusage usage{};
@@ -52,8 +67,9 @@ void ProgressLog::draw(const Progress& progress) {
     constexpr int kWidth = 30;
     std::string bar(kWidth, ' ');
     for (int i = 0; i < int(fraction * kWidth); ++i) bar[std::size_t(i)] = '#';
-    std::fprintf(stderr, "\r\033[K[%s] %3d %% %s", bar.c_str(), int(fraction * 100),
-                 printableText(progress.stage.substr(0, 60)).c_str());
+    std::fprintf(stderr, "\r\033[K[%s] %3d %% %s%s", bar.c_str(), int(fraction * 100),
+                 printableText(progress.stage.substr(0, 60)).c_str(),
+                 timeLeft(std::chrono::duration<double>(now - mBegan).count(), fraction).c_str());
     std::fflush(stderr);
     mVisible = true;
 }

@@ -13,6 +13,7 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -72,23 +73,74 @@ GridPtr directionGrid(const FrameField& frames, const FieldPlace& place, const I
     return grid;
 }
 
+VolumeAnalogyResult searched(const SearchFields& search, const FrameField& frames,
+                             const std::vector<AnalogyModelPair>& pairs, const AnalogyOptions& options,
+                             const RunContext& ctx) {
+    std::vector<FrameField> pairFrames;
+    for (std::size_t p = 0; p < pairs.size(); ++p)
+        pairFrames.push_back(framesOf(search.pairs[p].plain, search.pairs[p].place,
+                                      directionOfPair(*pairs[p].plain, options.exemplarDirection), "the pair",
+                                      "exemplarDirection", ctx));
+    std::vector<AnalogyPair> given;
+    for (std::size_t p = 0; p < pairs.size(); ++p)
+        given.push_back(
+            {search.pairs[p].plain, search.pairs[p].textured, &pairFrames[p], search.pairs[p].inner});
+    return makeAnalogy(given, *search.target, frames, options.synthesis, ctx);
+}
+
+// Strength times mask times what thin parts bear; empty: `strength` everywhere.
+BrickField weightOver(const LevelSet& target, const IndexBox& box, const BrickField& plain, float dig,
+                      float reach, float band, const AnalogyOptions& options, const RunContext& ctx) {
+    BrickField weight = thinWeight(plain, dig, reach, band, options.thin, ctx);
+    const float strength = float(options.strength);
+    if (!options.mask && weight.box().empty()) return weight;
+    const auto times = [&](const BrickField& other, float factor) {
+        return BrickField::generate(weight.box(), ctx, [&](const IndexBox& brick, float* samples) {
+            std::array<float, BrickField::kSamples> share;
+            weight.readBox(brick.min, brick.size(), samples);
+            other.readBox(brick.min, brick.size(), share.data());
+            for (std::size_t i = 0; i < share.size(); ++i) samples[i] *= share[i] * factor;
+        });
+    };
+    if (!options.mask) return times(BrickField(weight.box(), 1), strength);
+    const BrickField mask =
+        sampledWeight(*options.mask, {box, {}, {}, target.grid.get()}, strength, "`mask`", ctx);
+    return weight.box().empty() ? mask : times(mask, 1);
+}
+
+// How far textures reach from the plain surfaces and how deep they dig, -1 if a pair's does so at all depths.
+struct TextureDepth {
+    float reach = 0, dig = 0;
+};
+
+TextureDepth depthOf(const std::vector<PairFields>& fields, double scale) {
+    TextureDepth depth;
+    bool through = false;
+    for (const PairFields& pair : fields) {
+        const float reach = reachOf(*pair.plain, *pair.textured), dig = digOf(*pair.plain, *pair.textured);
+        if (reach > float(kMostReach - 1) * float(std::min(scale, 1.0)))
+            throw Error(ErrorCode::Unusable, "the texture reaches more than " +
+                                                 std::to_string(kMostReach - 1) +
+                                                 " voxels from the plain model's surface; use larger voxels, "
+                                                 "or check that the two models of the pair coincide");
+        depth.reach = std::max(depth.reach, reach);
+        depth.dig = std::max(depth.dig, dig);
+        through = through || dig < 0;
+    }
+    if (through) depth.dig = -1;
+    return depth;
+}
+
 AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const LevelSet& target,
                           const AnalogyOptions& options, const RunContext& ctx) {
     AnalogyResult result;
     const MappedTarget mapped{levelSetHash(*target.grid), voxelSizeOf(*target.grid), target.domainRecorded};
     std::vector<PairFields> fields;
-    for (const AnalogyModelPair& pair : pairs) {
-        fields.push_back(gatherPair(pair, options.scale, ctx));
-        const float reach = reachOf(*fields.back().plain, *fields.back().textured);
-        if (reach > float(kMostReach - 1) * float(std::min(options.scale, 1.0)))
-            throw Error(ErrorCode::Unusable, "the texture reaches more than " +
-                                                 std::to_string(kMostReach - 1) +
-                                                 " voxels from the plain model's surface; use larger voxels, "
-                                                 "or check that the two models of the pair coincide");
-        result.reach = std::max(result.reach, reach);
-    }
+    for (const AnalogyModelPair& pair : pairs) fields.push_back(gatherPair(pair, options.scale, ctx));
+    const TextureDepth depth = depthOf(fields, options.scale);
+    result.reach = depth.reach;
     const int levels = options.synthesis.levels == 0 ? 3 : std::clamp(options.synthesis.levels, 1, 6);
-    const int radius = (options.synthesis.half + 2) << (levels - 1);
+    const int radius = (options.synthesis.half + 2) << (levels - 1 + int(options.draft));
     const int band = int(std::ceil(result.reach)) + radius + 2;
     const CutFaces cut = facesTouched(target);
     const IndexBox box = grownBox(target.domain, cut, band);
@@ -100,28 +152,22 @@ AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const Leve
     const auto plain =
         std::make_shared<const BrickField>(gatherWideBand(*target.grid, box, cut, float(band), ctx));
     const FieldPlace place{target.grid.get(), {double(box.min.x), double(box.min.y), double(box.min.z)}, 1};
-    const FrameField frames = framesOf(plain, place, options.direction, "the target", "direction", ctx);
-    std::vector<FrameField> pairFrames;
-    for (std::size_t p = 0; p < pairs.size(); ++p)
-        pairFrames.push_back(framesOf(fields[p].plain, fields[p].place,
-                                      directionOfPair(*pairs[p].plain, options.exemplarDirection), "the pair",
-                                      "exemplarDirection", ctx));
-    std::vector<AnalogyPair> given;
-    for (std::size_t p = 0; p < pairs.size(); ++p)
-        given.push_back({fields[p].plain, fields[p].textured, &pairFrames[p], fields[p].inner});
-    VolumeAnalogyResult made = makeAnalogy(given, *plain, frames, options.synthesis, ctx);
+    const SearchFields search = searchFields(pairs, fields, plain, place, options, ctx);
+    const FrameField frames =
+        framesOf(search.target, search.place, options.direction, "the target", "direction", ctx);
+    VolumeAnalogyResult made = searched(search, frames, pairs, options, ctx);
+    if (options.draft) made = refinedDraft(made, plain->box());
     SourceMap& map = result.map = mapOf(made, fields, pairs, options.scale);
     map.target = mapped;
-    map.elements = placed(made.sources, fields, box.min, options.scale);
+    map.elements = placed(made.sources, search.pairs, box.min, options.scale);
     map.targetBox = box;
     map.targetDomain = target.domain;
     map.cut = cut;
     map.band = float(band);
     map.halfWidth = options.halfWidth;
     map.analogy.strength = float(options.strength);
-    if (options.mask)
-        map.analogy.weight = sampledWeight(*options.mask, {box, {}, {}, target.grid.get()},
-                                           float(options.strength), "`mask`", ctx);
+    map.analogy.weight =
+        weightOver(target, box, *plain, depth.dig, depth.reach, float(band - 1), options, ctx);
     std::vector<ExemplarSamples> samples;
     std::vector<const LevelSet*> textured;
     for (std::size_t p = 0; p < pairs.size(); ++p) {
@@ -130,10 +176,16 @@ AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const Leve
     }
     result.model = analogyThroughMap(map, 1, samples, *plain, target, result.reach, ctx);
     result.model.attributes = analogyAttributes(map, textured, *plain, target, *result.model.grid, ctx);
-    if (options.keepDirections) result.directions = directionGrid(frames, place, box);
+    if (options.keepDirections) {
+        result.directions =
+            options.draft
+                ? directionGrid(framesOf(plain, place, options.direction, "the target", "direction", ctx),
+                                place, box)
+                : directionGrid(frames, place, box);
+    }
     result.levels = std::move(made.levels);
     for (const Vec3f& p : frames.directions().singularities)
-        result.singularities.push_back(place.toWorld(cast<double>(p)));
+        result.singularities.push_back(search.place.toWorld(cast<double>(p)));
     result.cut = frames.sweep().cut;
     return result;
 }

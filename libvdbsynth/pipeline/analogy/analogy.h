@@ -38,13 +38,24 @@ inline constexpr const char* kDirectionKey = "vdbsynth:direction";
 /// @return false if the text is none of these
 bool parseDirection(const std::string& text, DirectionSource& source);
 
+/// What happens to parts of a target that are thinner than the texture is deep.
+enum class ThinParts {
+    Scale,  ///< the depth is scaled with the part's thickness, so that a core stays
+    Keep,   ///< the texture fades out before such parts, which stay as they are
+    AsIs    ///< the whole depth everywhere: parts may be cut through
+};
+
 struct AnalogyOptions {
     VolumeAnalogyOptions synthesis;
     DirectionSource direction;          ///< over the target
     DirectionSource exemplarDirection;  ///< over the plain model of each pair
-    double scale = 1;              ///< of the texture, 0.25..4: 2 is twice as large in the target's voxels
-    double strength = 1;           ///< 0..1: blend from the target to the result
-    GridConstPtr mask;             ///< 0..1 over the target, by which strength is multiplied; null: 1
+    double scale = 1;     ///< of the texture, 0.25..4: 2 is twice as large in the target's voxels
+    double strength = 1;  ///< 0..1: blend from the target to the result
+    GridConstPtr mask;    ///< 0..1 over the target, by which strength is multiplied; null: 1
+    ThinParts thin = ThinParts::Scale;
+    /// A quick look: sources are searched at half the resolution, with the texture at half the size, and read
+    /// at full resolution. In about a tenth of the time.
+    bool draft = false;
     float halfWidth = kHalfWidth;  ///< [voxels] of the result, 1.5..100
     bool keepDirections = false;   ///< fills AnalogyResult::directions
 };

@@ -28,6 +28,55 @@ BrickField scaled(const BrickField& field, double scale, const RunContext& ctx) 
     });
 }
 
+// The box without what lies beyond a model's domain at its cut faces.
+IndexBox knownPart(const LevelSet& model, const CutFaces& cut, IndexBox box) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const int a = int(axis);
+        if (cut[2 * axis]) box.min[a] = std::max(box.min[a], model.domain.min[a]);
+        if (cut[2 * axis + 1]) box.max[a] = std::min(box.max[a], model.domain.max[a]);
+    }
+    return box;
+}
+
+// A field over a larger box, where the solid that it ends in gets deeper by a voxel each voxel.
+BrickField deepened(const BrickField& known, const Index3& before, const Index3& size,
+                    const RunContext& ctx) {
+    if (known.box().size() == size) return known;
+    return BrickField::fromVoxels(IndexBox::fromSize(size), ctx, [&](const Index3& p) {
+        const Index3 inside = p - before;
+        Index3 nearest = inside;
+        int beyond = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            nearest[axis] = std::clamp(inside[axis], 0, known.box().max[axis]);
+            beyond = std::max(beyond, std::abs(inside[axis] - nearest[axis]));
+        }
+        return std::max(known.inside(nearest) - float(beyond), -float(kMostReach));
+    });
+}
+
+// True if a face's whole layer is in the solid, deeper than what is read at a voxel there.
+bool inSolid(const BrickField& field, int axis, bool high) {
+    constexpr float kDeep = -1.5f;
+    IndexBox layer = field.box();
+    (high ? layer.min : layer.max)[axis] = (high ? layer.max : layer.min)[axis];
+    std::vector<float> values(std::size_t(layer.volume()));
+    field.readBox(layer.min, layer.size(), values.data());
+    return std::all_of(values.begin(), values.end(), [](float d) { return d <= kDeep; });
+}
+
+// A slab's underside is a cut far from its texture. The solid is made to continue below it, for otherwise the
+// margin of neighbourhoods would take the texture's lowest layers from what can be copied.
+IndexBox deepenedBox(const IndexBox& box, const CutFaces& cut, const BrickField& plain,
+                     const BrickField& textured) {
+    IndexBox deep = box;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const bool high : {false, true})
+            if (cut[std::size_t(2 * axis + int(high))] && inSolid(plain, axis, high) &&
+                inSolid(textured, axis, high))
+                (high ? deep.max : deep.min)[axis] += high ? kMostReach : -kMostReach;
+    return deep;
+}
+
 }  // namespace
 
 void requireOnePlace(const AnalogyModelPair& pair) {
@@ -43,7 +92,9 @@ void requireOnePlace(const AnalogyModelPair& pair) {
 
 BrickField gatherTextured(const LevelSet& textured, const IndexBox& box, const CutFaces& cut, float reach,
                           double scale, const RunContext& ctx) {
-    BrickField field = gatherWideBand(*textured.grid, box, cut, reach, ctx);
+    const IndexBox known = knownPart(textured, cut, box);
+    const BrickField field = deepened(gatherWideBand(*textured.grid, known, cut, reach, ctx),
+                                      known.min - box.min, box.size(), ctx);
     return scale == 1 ? field : scaled(field, scale, ctx);
 }
 
@@ -79,12 +130,14 @@ PairFields gatherPair(const AnalogyModelPair& pair, double scale, const RunConte
     PairFields fields;
     fields.box = grownBox(domain, cut, kMostReach);
     requireMemory(ctx, double(fields.box.volume()) * 12, "the pair", "use larger voxels or crop the pair");
-    const auto gathered = [&](const LevelSet& model, const CutFaces& faces) {
+    const auto gathered = [&](const LevelSet& model, const CutFaces& faces, double by) {
         return std::make_shared<const BrickField>(
-            gatherTextured(model, fields.box, faces, float(kMostReach), scale, ctx));
+            gatherTextured(model, fields.box, faces, float(kMostReach), by, ctx));
     };
-    fields.plain = gathered(*pair.plain, cutPlain);
-    fields.textured = gathered(*pair.textured, cutTextured);
+    fields.box = deepenedBox(fields.box, cut, *gathered(*pair.plain, cutPlain, 1),
+                             *gathered(*pair.textured, cutTextured, 1));
+    fields.plain = gathered(*pair.plain, cutPlain, scale);
+    fields.textured = gathered(*pair.textured, cutTextured, scale);
     fields.cutTextured = cutTextured;
     fields.inner = fields.plain->box();
     fields.place = {pair.plain->grid.get(),

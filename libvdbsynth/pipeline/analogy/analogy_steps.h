@@ -37,6 +37,23 @@ struct PairFields {
 /// @throw Error ShapeMismatch (other voxels, or no overlap), Memory
 PairFields gatherPair(const AnalogyModelPair& pair, double scale, const RunContext& ctx);
 
+/// What a search runs on: the target and the pairs as fields.
+struct SearchFields {
+    std::shared_ptr<const BrickField> target;
+    FieldPlace place;
+    std::vector<PairFields> pairs;
+};
+
+/// The target's field and the pairs' as they are or, for a draft, the target at half the resolution and the
+/// pairs gathered again at half the scale.
+SearchFields searchFields(const std::vector<AnalogyModelPair>& pairs, const std::vector<PairFields>& fields,
+                          std::shared_ptr<const BrickField> target, const FieldPlace& place,
+                          const AnalogyOptions& options, const RunContext& ctx);
+
+/// The sources of a draft's voxels for the eight of the target that each stands for, still in voxels of the
+/// draft's pairs.
+VolumeAnalogyResult refinedDraft(const VolumeAnalogyResult& draft, const IndexBox& target);
+
 /// A textured model over a box of its index space at the texture's scale, as gatherPair makes it.
 BrickField gatherTextured(const LevelSet& textured, const IndexBox& box, const CutFaces& cut, float reach,
                           double scale, const RunContext& ctx);
@@ -65,6 +82,20 @@ LevelSet repeatAnalogy(const SourceMap& map, int factor, const std::vector<const
 
 /// Largest distance of the textured surface from the plain one. [voxels]
 float reachOf(const BrickField& plain, const BrickField& textured);
+
+/// How deep a texture digs: largest depth below the plain surface that the textured model leaves empty.
+/// [voxels]
+/// @return -1 if it is empty at all depths, as with holes and shells
+float digOf(const BrickField& plain, const BrickField& textured);
+
+/// The share of the texture's depth at every voxel of the target that leaves a core of 1.5 voxels in its
+/// local thickness [hildebrand1997]; see ThinParts. Says on what share of the surface it is under 1.
+/// @param plain  distances of the target [voxels], valid up to `band`; box begins at 0
+/// @param dig    digOf   @param reach  of the texture [voxels]
+/// @return empty where nothing is too thin, or `dig` is under 1
+/// @throw Error Memory, Cancelled   @par Repeats same bits for any number of threads
+BrickField thinWeight(const BrickField& plain, float dig, float reach, float band, ThinParts thin,
+                      const RunContext& ctx);
 
 /// Frames around a field's surface, from a source of directions.
 /// @param what   for messages, such as "the target"

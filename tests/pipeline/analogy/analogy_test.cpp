@@ -7,7 +7,9 @@
 #include <cmath>
 
 #include "libvdbsynth/grid/occupancy.h"
+#include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/pipeline/make/make.h"
+#include "libvdbsynth/pipeline/repeat/repeat.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
 #include "libvdbsynth/vdb/source_map_grids.h"
 #include "tests/support/makers.h"
@@ -44,7 +46,143 @@ AnalogyResult applied(const ModelPair& pair, const LevelSet& target, AnalogyOpti
     return makeAnalogyModel({{&pair.plain, &pair.textured}}, target, options, ctx);
 }
 
+// A solid by its distances over a domain that it is cut at.
+template <typename Distance>
+LevelSet solidOf(const IndexBox& domain, bool recorded, Distance&& distance) {
+    openvdb::initialize();
+    const auto grid = openvdb::FloatGrid::create(3.f);
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    grid->setName("surface");
+    auto to = grid->getAccessor();
+    forEachVoxel(domain.expanded(recorded ? 3 : 0), [&](const Index3& p) {
+        double d = distance(Vec3d{double(p.x), double(p.y), double(p.z)});
+        if (recorded)
+            for (int axis = 0; axis < 3; ++axis)
+                d = std::max({d, domain.min[axis] - 0.5 - p[axis], p[axis] - domain.max[axis] - 0.5});
+        const openvdb::Coord at(p.x, p.y, p.z);
+        if (std::abs(d) < 3)
+            to.setValueOn(at, float(d));
+        else
+            to.setValueOff(at, d < 0 ? -3.f : 3.f);
+    });
+    LevelSet model;
+    model.grid = grid;
+    model.domain = recorded ? domain : solidBox(*grid, "the test");
+    model.domainRecorded = recorded;
+    stampLevelSet(model);
+    return model;
+}
+
+// Deviation of a result's surface from a ball around 0. [voxels]
+double reliefOnBall(const openvdb::FloatGrid& grid, double radius) {
+    double sum = 0, squares = 0, count = 0;
+    for (auto it = grid.cbeginValueOn(); it; ++it) {
+        if (std::abs(*it) > 0.5f) continue;
+        const double height = it.getCoord().asVec3d().length() - radius - double(*it);
+        sum += height;
+        squares += height * height;
+        ++count;
+    }
+    return std::sqrt(squares / count - sum / count * (sum / count));
+}
+
+// A ball with a rod that is thinner than grooves are deep on both sides.
+LevelSet ballWithRod() {
+    return solidOf(IndexBox{{-30, -30, -30}, {30, 30, 70}}, false, [](const Vec3d& p) {
+        const double across = std::sqrt(p.x * p.x + p.y * p.y);
+        return std::min(length(p) - 24, std::max({across - 3.5, -p.z, p.z - 60}));
+    });
+}
+
+// Solid voxels of the rod.
+std::size_t rodVoxels(const openvdb::FloatGrid& grid) {
+    std::size_t solid = 0;
+    auto at = grid.getConstAccessor();
+    forEachVoxel(IndexBox{{-8, -8, 34}, {8, 8, 62}},
+                 [&](const Index3& p) { solid += at.getValue(openvdb::Coord(p.x, p.y, p.z)) < 0; });
+    return solid;
+}
+
 }  // namespace
+
+TEST_CASE("makeAnalogyModel: a shallow texture of a thin slab arrives on a ball at its strength",
+          "[pipeline]") {
+    // Five voxels of solid below the texture: less than the margin of neighbourhoods. The surface's depth
+    // within a voxel is another at every place of a ball, and one and the same on a slab.
+    const IndexBox slab{{0, 0, 0}, {79, 79, 14}};
+    constexpr double kHeight = 1.2;
+    const LevelSet plain = solidOf(slab, true, [](const Vec3d& p) { return p.z - 5.3; });
+    const LevelSet textured = solidOf(slab, true, [](const Vec3d& p) {
+        return p.z - 5.3 - kHeight * std::cos(2 * 3.14159265358979 * p.y / 12);
+    });
+    const LevelSet ball = solidOf(IndexBox{{-40, -40, -40}, {40, 40, 40}}, false,
+                                  [](const Vec3d& p) { return length(p) - 33; });
+    AnalogyOptions options;
+    options.direction = direction("around:z");
+    options.exemplarDirection = direction("axis:x");
+    const AnalogyResult result = makeAnalogyModel({{&plain, &textured}}, ball, options);
+    const double relief = reliefOnBall(*result.model.grid, 33);
+    CHECK(reliefOnBall(*ball.grid, 33) < 0.02);
+    CHECK(relief > 0.75 * kHeight / std::sqrt(2));
+    CHECK(relief < 1.15 * kHeight / std::sqrt(2));
+}
+
+TEST_CASE("makeAnalogyModel: thin parts bear a share of the texture, none of it, or are cut", "[pipeline]") {
+    const ModelPair pair = pairOf("grooves");
+    const LevelSet target = ballWithRod();
+    const std::size_t whole = rodVoxels(*target.grid);
+    AnalogyOptions options;
+    options.direction = direction("axis:z");
+    std::vector<std::string> notes;
+    RunContext ctx;
+    ctx.onMessage = [&](MessageLevel level, const std::string& text) {
+        if (level == MessageLevel::Note) notes.push_back(text);
+    };
+    const AnalogyResult scaled = applied(pair, target, options, ctx);
+    REQUIRE(notes.size() == 1);
+    CHECK(test::contains(notes[0], "`thin`"));
+    options.thin = ThinParts::Keep;
+    const AnalogyResult kept = applied(pair, target, options);
+    options.thin = ThinParts::AsIs;
+    notes.clear();
+    const AnalogyResult cut = applied(pair, target, options, ctx);
+    CHECK(notes.empty());
+    CHECK(rodVoxels(*kept.model.grid) == whole);
+    CHECK(rodVoxels(*scaled.model.grid) > whole / 2);
+    CHECK(rodVoxels(*scaled.model.grid) < whole);
+    CHECK(double(rodVoxels(*cut.model.grid)) < 0.8 * double(rodVoxels(*scaled.model.grid)));
+    // Where the ball is thick all three are one.
+    for (const AnalogyResult* other : {&scaled, &kept}) {
+        std::size_t different = 0;
+        auto a = cut.model.grid->getConstAccessor(), b = other->model.grid->getConstAccessor();
+        forEachVoxel(IndexBox{{-26, -26, -26}, {26, 26, -4}}, [&](const Index3& p) {
+            const openvdb::Coord at(p.x, p.y, p.z);
+            different += a.getValue(at) != b.getValue(at);
+        });
+        CHECK(different == 0);
+    }
+}
+
+TEST_CASE("makeAnalogyModel: a draft has the texture, repeats from its map, same bits for any threads",
+          "[pipeline]") {
+    const ModelPair pair = pairOf("grooves", 96);
+    const LevelSet target = solidOf(IndexBox{{-50, -50, -50}, {50, 50, 50}}, false,
+                                    [](const Vec3d& p) { return length(p) - 40; });
+    AnalogyOptions options;
+    options.direction = direction("around:z");
+    const AnalogyResult full = applied(pair, target, options);
+    options.draft = true;
+    RunContext one;
+    one.threads = 1;
+    const AnalogyResult draft = applied(pair, target, options), again = applied(pair, target, options, one);
+    CHECK(levelSetHash(*draft.model.grid) == levelSetHash(*again.model.grid));
+    const double relief = reliefOnBall(*draft.model.grid, 40), wanted = reliefOnBall(*full.model.grid, 40);
+    CHECK(relief == Approx(wanted).epsilon(0.2));
+    REQUIRE(!draft.levels.empty());
+    CHECK(draft.levels.back().voxels < full.levels.back().voxels / 6);
+    const LevelSet repeated = repeatMap(draft.map, {&pair.textured, &target});
+    CHECK(levelSetHash(*repeated.grid) == levelSetHash(*draft.model.grid));
+}
 
 TEST_CASE("parseDirection: what it takes and what it does not", "[pipeline]") {
     CHECK(direction("axis:-y").axis.y == -1);

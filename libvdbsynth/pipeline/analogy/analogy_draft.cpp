@@ -1,0 +1,48 @@
+// What an analogy searches, at the target's resolution or, for a draft, half of it.
+#include "libvdbsynth/grid/pyramid.h"
+#include "libvdbsynth/map/exemplar_variant.h"
+#include "libvdbsynth/math/affine.h"
+#include "libvdbsynth/math/lattice.h"
+#include "libvdbsynth/pipeline/analogy/analogy_steps.h"
+
+#include <utility>
+
+namespace vdbsynth {
+
+SearchFields searchFields(const std::vector<AnalogyModelPair>& pairs, const std::vector<PairFields>& fields,
+                          std::shared_ptr<const BrickField> target, const FieldPlace& place,
+                          const AnalogyOptions& options, const RunContext& ctx) {
+    if (!options.draft) return {std::move(target), place, fields};
+    SearchFields search;
+    const BrickField half = halved(*target, ctx);
+    search.target = std::make_shared<const BrickField>(
+        BrickField::generate(half.box(), ctx, [&](const IndexBox& brick, float* samples) {
+            half.readBox(brick.min, brick.size(), samples);
+            for (int i = 0; i < BrickField::kSamples; ++i) samples[i] /= 2;
+        }));
+    search.place = {place.like, place.corner + Vec3d{0.5, 0.5, 0.5}, 2};
+    for (const AnalogyModelPair& pair : pairs)
+        search.pairs.push_back(gatherPair(pair, options.scale / 2, ctx));
+    return search;
+}
+
+VolumeAnalogyResult refinedDraft(const VolumeAnalogyResult& draft, const IndexBox& target) {
+    VolumeAnalogyResult result;
+    result.levels = draft.levels;
+    for (const DepthRun& run : draft.depths) result.depths.push_back({2 * run.from, run.full});
+    for (std::size_t i = 0; i < draft.sources.size(); ++i) {
+        const Source& coarse = *draft.sources.strongest(i);
+        const Affine back = rotationMatrix(cast<double>(coarse.rotation) * -1.0);
+        const Index3 first = draft.sources.voxels()[i] * 2;
+        forEachVoxel(IndexBox{first, first + Index3{1, 1, 1}}.intersection(target), [&](const Index3& p) {
+            const Index3 corner = p - first;
+            const Vec3d offset = Vec3d{corner.x - 0.5, corner.y - 0.5, corner.z - 0.5} * 0.5;
+            Source source = coarse;
+            source.position = coarse.position + transformed(back, offset);
+            result.sources.add(p, source);
+        });
+    }
+    return result;
+}
+
+}  // namespace vdbsynth

@@ -111,6 +111,17 @@ int reportDeath(const Child& child, int signal, bool hung) {
     return 1;
 }
 
+// waitpid for the child. A container's process 1 is given the processes that lost their parents: they are
+// waited for too, or they stay as zombies.
+pid_t waitFor(const Child& child, int& status, int options) {
+    for (;;) {
+        int one = 0;
+        const pid_t ended = ::waitpid(-1, &one, options);
+        if (ended == child.process) status = one;
+        if (ended == child.process || ended <= 0) return ended;
+    }
+}
+
 int watch(Child& child, int file) {
     bool killed = false, hung = false, asked = false;
     Clock::time_point askedAt;
@@ -119,11 +130,11 @@ int watch(Child& child, int file) {
         pollfd wait{file, POLLIN, 0};
         ::poll(&wait, 1, 200);
         readMessages(child, file);
-        const pid_t ended = ::waitpid(child.process, &status, WNOHANG);
+        const pid_t ended = waitFor(child, status, WNOHANG);
         if (ended == child.process || (ended < 0 && errno == ECHILD)) break;
         if (wait.revents & POLLHUP) {
             // The child closed its end: it is about to end.
-            if (::waitpid(child.process, &status, 0) == child.process) break;
+            if (waitFor(child, status, 0) == child.process) break;
         }
         if (gSignal && !asked) {
             asked = true;

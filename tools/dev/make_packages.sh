@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# Builds the Debian packages: vdb-synth, libvdbsynth-dev and, where it is built, python3-vdbsynth.
+# Usage: tools/dev/make_packages.sh [--of BUILD] [FOLDER]
+#   FOLDER      where the .deb files go, default build/packages/debian
+#   --of BUILD  pack a build folder as it is, instead of building in build/packages
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+build=
+if [ "${1:-}" = --of ]; then
+  build=${2:?--of needs a build folder}
+  shift 2
+fi
+out=$(realpath -m "${1:-build/packages/debian}")
+for tool in cpack dpkg-shlibdeps dpkg-deb; do
+  command -v "$tool" >/dev/null || { echo "error: $tool is missing; install cmake, dpkg and dpkg-dev" >&2; exit 1; }
+done
+if [ -z "$build" ]; then
+  build=build/packages
+  options=(-DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DVDBSYNTH_BUILD_TESTS=OFF)
+  command -v ccache >/dev/null && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  if grep -q 'option(VDBSYNTH_PYTHON' CMakeLists.txt; then options+=(-DVDBSYNTH_PYTHON="${VDBSYNTH_PYTHON:-ON}"); fi
+  cmake -G Ninja -S . -B "$build" "${options[@]}"
+  cmake --build "$build"
+fi
+mkdir -p "$out"
+rm -f "$out"/*.deb
+# cpack writes its own folder of work beside the packages.
+(cd "$build" && cpack --config CPackConfig.cmake -G DEB -B "$out" >"$out/cpack.log" 2>&1) || { cat "$out/cpack.log" >&2; exit 1; }
+rm -rf "$out/_CPack_Packages" "$out/cpack.log"
+for package in "$out"/*.deb; do echo "$package"; done

@@ -39,7 +39,12 @@ set(CPACK_COMPONENT_DEV_DESCRIPTION
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-vdbsynth)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy")
+# A module is of one minor version of Python, that of the interpreter it was built for.
+if(VDBSYNTH_PYTHON)
+  execute_process(COMMAND ${Python3_EXECUTABLE} -c "import sys; a, b = sys.version_info[:2]; print(f'python3 (>= {a}.{b}), python3 (<< {a}.{b + 1})')"
+                  OUTPUT_VARIABLE interpreter OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${interpreter}, python3-numpy")
+endif()
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION
     "make new geometry from examples (Python module)\nThe functions of vdb_synth for Python: import vdbsynth.")
 

@@ -3,6 +3,7 @@
 # Usage: tools/dev/make_packages.sh [--of BUILD] [FOLDER]
 #   FOLDER      where the .deb files go, default build/packages/debian
 #   --of BUILD  pack a build folder as it is, instead of building in build/packages
+# VDBSYNTH_PYTHON=ON or OFF in the environment decides on the Python module; default ON where pybind11-dev is installed.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 build=
@@ -18,7 +19,15 @@ if [ -z "$build" ]; then
   build=build/packages
   options=(-DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DVDBSYNTH_BUILD_TESTS=OFF)
   command -v ccache >/dev/null && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-  if grep -q 'option(VDBSYNTH_PYTHON' CMakeLists.txt; then options+=(-DVDBSYNTH_PYTHON="${VDBSYNTH_PYTHON:-ON}"); fi
+  python=${VDBSYNTH_PYTHON:-}
+  if [ -z "$python" ]; then
+    python=ON
+    if ! dpkg-query -W pybind11-dev >/dev/null 2>&1; then
+      python=OFF
+      echo "note: pybind11-dev is not installed: python3-vdbsynth is left out" >&2
+    fi
+  fi
+  options+=(-DVDBSYNTH_PYTHON="$python")
   cmake -G Ninja -S . -B "$build" "${options[@]}"
   cmake --build "$build"
 fi

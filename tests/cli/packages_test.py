@@ -73,6 +73,15 @@ class Packages(CliTest):
         run("cmake", "--build", build)
         run(build + "/consumer")
 
+    def test_the_python_module(self):
+        modules = glob.glob(self.place + "/python3-vdbsynth_*.deb")
+        if not modules:
+            self.skipTest("the build has no Python module (VDBSYNTH_PYTHON)")
+        self.assertRegex(field(modules[0], "Depends"), r"python3 \(>= 3\.\d+\), python3 \(<< 3\.\d+\), python3-numpy")
+        self.assertIn("libopenvdb", field(modules[0], "Depends"))
+        run("dpkg-deb", "-x", modules[0], self.path("root"))
+        run("/usr/bin/python3", "-c", "import vdbsynth", cwd="/", env={**os.environ, "PYTHONPATH": self.path("root/usr/lib/python3/dist-packages")})
+
     def bare_system(self):
         """A system of the packages that are always there, made from the machine's own sources."""
         if os.geteuid() != 0:

@@ -32,8 +32,10 @@ if [ -z "$build" ]; then
   cmake --build "$build"
 fi
 mkdir -p "$out"
+# What cpack leaves beside the packages goes with the folder.
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+(cd "$build" && cpack --config CPackConfig.cmake -G DEB -B "$work" >"$work/log" 2>&1) || { cat "$work/log" >&2; exit 1; }
 rm -f "$out"/*.deb
-# cpack writes its own folder of work beside the packages.
-(cd "$build" && cpack --config CPackConfig.cmake -G DEB -B "$out" >"$out/cpack.log" 2>&1) || { cat "$out/cpack.log" >&2; exit 1; }
-rm -rf "$out/_CPack_Packages" "$out/cpack.log"
+mv "$work"/*.deb "$out"
 for package in "$out"/*.deb; do echo "$package"; done

@@ -106,7 +106,8 @@ int reportDeath(const Child& child, int signal, bool hung) {
         return 3;
     }
     std::fprintf(stderr,
-                 "%sinternal error (signal %d); nothing was written; please report the command line\n",
+                 "%sinternal error (signal %d); nothing was written; please report the "
+                 "command line and what vdb_synth doctor prints\n",
                  program, signal);
     return 1;
 }

@@ -12,11 +12,16 @@
 namespace vdbsynth {
 namespace {
 
-constexpr std::uint64_t kFormat = 0x3258444942445655ull;  // changes with the meaning of the arrays
+// "UVDBIDX2" as bytes. The last one is the format: it changes with the meaning of the arrays.
+constexpr std::uint64_t kFormat = 0x3258444942445655ull;
 
 struct Header {
     std::uint64_t format = kFormat, nodes = 0, members = 0, groups = 0, check = 0;
 };
+
+char formatDigit(std::uint64_t format) {
+    return char(format >> 56);
+}
 
 // Calls each(vector) for everything that is stored, in the file's order.
 template <typename Data, typename Each>
@@ -42,6 +47,14 @@ std::uint64_t checkOf(const BlockIndexData& data) {
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
     throw Error(ErrorCode::BadData, path + ": " + why);
+}
+
+std::string otherFormat(std::uint64_t format) {
+    const char digit = formatDigit(format);
+    const bool index = (format ^ kFormat) << 8 == 0 && digit >= '0' && digit <= '9';
+    if (!index) return "is no search index";
+    return std::string("is a search index of format ") + digit +
+           ", of another version of vdb_synth; this one reads format " + formatDigit(kFormat);
 }
 
 void read(std::ifstream& file, const std::string& path, void* to, std::size_t bytes) {
@@ -100,7 +113,7 @@ bool readBlockIndex(const std::string& path, BlockIndexData& data) {
     if (!file) throw Error(ErrorCode::Io, path + ": cannot be read");
     Header header;
     read(file, path, &header, sizeof header);
-    if (header.format != kFormat) refuse(path, "is not a block index of this version");
+    if (header.format != kFormat) refuse(path, otherFormat(header.format));
     const std::uint64_t size = std::filesystem::file_size(path, ignored), most = size / 2;
     if (ignored) throw Error(ErrorCode::Io, path + ": cannot be read");
     if (header.nodes == 0 || header.nodes > most || header.members > most || header.groups > most)

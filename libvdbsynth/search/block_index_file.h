@@ -6,7 +6,7 @@
 namespace vdbsynth {
 
 /// Name of the file that stores an index of this exemplar, mask and block: a content hash of all three and of
-/// the format, so that a file is never mistaken for another's.
+/// the format, so that a file is never mistaken for another's, and versions of the program share a folder.
 /// @par Repeats same name for any number of threads
 std::string blockIndexFileName(const BrickField& exemplar, const BrickField* mask, int block,
                                const RunContext& ctx);

@@ -1,6 +1,7 @@
 // Reads a source map from grids that any program may have written.
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/base/printable_text.h"
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/level_set.h"
 #include "libvdbsynth/vdb/source_map_grids.h"
@@ -172,8 +173,11 @@ private:
     }
 
     void readMethod() {
-        if (mEntries.text("format") != kFormat)
-            refuse("was written by another version of vdb_synth; create it again");
+        const std::string format = mEntries.text("format");
+        if (format != kFormat)
+            refuse("is of format " + printableText(format, 20) +
+                   ", of another version of vdb_synth; this one reads format " + kFormat +
+                   ": create the map again, or use the version that wrote it");
         const std::string method = mEntries.has("method") ? mEntries.text("method") : "synthesis";
         mMap.method = method == "fill"      ? MapMethod::Fill
                       : method == "analogy" ? MapMethod::Analogy
@@ -185,7 +189,7 @@ private:
                                : kernel == kVoteKernel || kernel == kFirstKernel;
         if (!known || (method != "synthesis" && mMap.method == MapMethod::Synthesis) ||
             (mMap.method == MapMethod::Analogy) != (mMain->getName() == "source"))
-            refuse("was written by another version of vdb_synth; create it again");
+            refuse("has a method or kernel that this version of vdb_synth does not know; create it again");
     }
 
     void readExemplars() {

@@ -37,7 +37,8 @@ struct VdbContents {
     VdbMetadata metadata;
 };
 
-/// All of a file. A grid of a kind that this OpenVDB does not support is left out with a warning.
+/// All of a file. A grid of a kind that this OpenVDB does not support is left out with a warning, and
+/// metadata of a newer vdb_synth (read/metadata_format.h) are a warning.
 /// @throw Error Io (missing, a directory, not readable), BadData (not a VDB file, truncated, corrupt)
 VdbContents readVdb(const std::string& path, const RunContext& ctx = {});
 

@@ -4,6 +4,7 @@
 #include "libvdbsynth/io/readers/whole_file.h"
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/read/grid_names.h"
+#include "libvdbsynth/vdb/read/metadata_format.h"
 #include "libvdbsynth/vdb/read/vdb_layout.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "libvdbsynth/vdb/wall.h"
@@ -188,6 +189,8 @@ VdbContents readVdb(const std::string& path, const RunContext& ctx) {
         contents = readUnpacked(path, file, std::filesystem::file_size(path), ctx);
     }
     dropDamagedEntries(contents);
+    const std::string unknown = unknownMetadata(contents.metadata);
+    if (!unknown.empty()) message(ctx, MessageLevel::Warning, path + ": " + unknown);
     // By name, and grids of one name as the file has them.
     std::stable_sort(contents.grids.begin(), contents.grids.end(),
                      [](const GridPtr& a, const GridPtr& b) { return a->getName() < b->getName(); });

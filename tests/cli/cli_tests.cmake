@@ -8,6 +8,7 @@ function(add_cli_test file)
   endforeach()
 endfunction()
 
+add_cli_test(about_test Versions Doctor Manual Completion)
 add_cli_test(analogy_test Analogy)
 add_cli_test(batch_test Plans Refusals Runs Kills)
 add_cli_test(compare_test Compare Libraries Page)
@@ -15,6 +16,7 @@ add_cli_test(options_test Answers Overwriting Help Moved)
 add_cli_test(patch_test Sheets Refused)
 add_cli_test(patch_onto_test Over)
 add_cli_test(patches_test PatchMeasures)
+add_cli_test(formats_test Formats)
 add_cli_test(frames_test Frames Poses TwistedBunny)
 add_cli_test(path_test Attributes Doors StandardStreams MainPath Determinism Words)
 add_cli_test(error_test BadOptions BadFiles Disk Signals)
@@ -36,6 +38,10 @@ add_cli_test(synth_test Synth)
 add_cli_test(texture_test Texture Pictures Hostile)
 add_cli_test(threemf_test ThreeMf)
 add_cli_test(programs_test Programs)
+
+# Packs the build folder and makes a bare Debian: tools/run_tests.sh --all.
+add_cli_test(packages_test Packages)
+set_tests_properties("cli: packages_test Packages" PROPERTIES ENVIRONMENT "${CLI_ENVIRONMENT};VDBSYNTH_BUILD=${PROJECT_BINARY_DIR}" LABELS all)
 
 # A short run of every fuzz target; tools/dev/fuzz.sh runs them for longer.
 add_test(NAME "fuzz: readers" COMMAND ${PROJECT_SOURCE_DIR}/tools/dev/fuzz.sh 3)

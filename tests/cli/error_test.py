@@ -1,4 +1,5 @@
 """Errors by the contract: exit code, one line that names the file or option, nothing written."""
+import json
 import os
 import random
 import shutil
@@ -281,6 +282,50 @@ class Signals(CliTest):
         result = subprocess.run([*own, PROGRAM, "info", "none.vdb"], cwd=self.folder, capture_output=True, text=True, timeout=60)
         self.assertEqual(result.returncode, 3)
         self.assertIn("none.vdb: no such file", result.stderr)
+
+    def in_a_namespace(self, *words):
+        """The tool as process 1, and its number outside."""
+        own = ["unshare", "--user", "--map-root-user", "--pid", "--fork", "--mount-proc", "--kill-child"]
+        if not shutil.which("unshare") or subprocess.run([*own, "true"], capture_output=True).returncode:
+            self.skipTest("a namespace of processes cannot be made here")
+        outer = subprocess.Popen([*own, PROGRAM, *words], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(outer.communicate)
+        self.addCleanup(outer.kill)
+        time.sleep(1.5)
+        children = subprocess.run(["pgrep", "-P", str(outer.pid)], capture_output=True, text=True).stdout.split()
+        self.assertEqual(len(children), 1, "it ended too early")
+        return outer, int(children[0])
+
+    def test_process_one_ends_on_sigterm(self):
+        synth = ["synth", "b.vdb", "-o", "x.vdb", "--size", "6x,6x,6x"]
+        self.write("j.json", json.dumps({"jobs": [{"name": "a", "command": "synth", "inputs": "b.vdb", "output": "x.vdb",
+                                                   "options": {"size": "6x,6x,6x"}}]}))
+        for words, number, code in ((synth, signal.SIGTERM, 143), (synth, signal.SIGINT, 130), (["batch", "j.json"], signal.SIGTERM, 143)):
+            with self.subTest((words[0], code)):
+                outer, one = self.in_a_namespace(*words)
+                began = time.monotonic()
+                os.kill(one, number)
+                _, said = outer.communicate(timeout=60)
+                self.assertEqual(outer.returncode, code, said)
+                self.assertLess(time.monotonic() - began, 20)
+                self.assertIn("interrupted", said)
+                self.assertEqual(self.read("x.vdb"), b"old")
+                self.assertFalse([f for f in self.files() if f.endswith(".tmp")])
+
+    def test_process_one_leaves_no_zombies(self):
+        outer, one = self.in_a_namespace("synth", "b.vdb", "-o", "x.vdb", "--size", "6x,6x,6x")
+        # Others come into a container (docker exec) and leave processes without a parent behind.
+        enter = ["nsenter", "--target", str(one), "--user", "--pid", "--preserve-credentials"]
+        if subprocess.run([*enter, "true"], capture_output=True).returncode:
+            self.skipTest("nsenter cannot enter a namespace of processes here")
+        subprocess.run([*enter, "sh", "-c", "sleep 0.2 & sleep 0.3 & exit 0"], check=True, timeout=20)
+        time.sleep(1.5)
+        states = subprocess.run(["ps", "--ppid", str(one), "-o", "stat=,comm="], capture_output=True, text=True).stdout.split("\n")
+        states = [line for line in states if line]
+        self.assertEqual(len(states), 1, states)  # the worker
+        self.assertNotEqual(states[0][0], "Z")
+        os.kill(one, signal.SIGTERM)
+        self.assertEqual(outer.wait(timeout=60), 143)
 
     def test_a_worker_without_its_parent_ends(self):
         result = self.run_tool("make", "grid", "g.vdb", "--resolution", 24,

@@ -113,6 +113,28 @@ TEST_CASE("Block index file: a damaged or truncated one is refused and made agai
     CHECK(std::streamoff(fs::file_size(file)) == size);
 }
 
+TEST_CASE("Block index file: one of another format is said by its number, and made again", "[search]") {
+    const Folder folder("index_format");
+    const auto field = std::make_shared<const BrickField>(test::ballsField({24, 28, 26}, 3, 3.f));
+    BlockIndexOptions options;
+    options.block = 8;
+    options.cacheFolder = folder.path.string();
+    const std::vector<BlockMatch> expected = answers(BlockIndex::build(field, options), *field);
+    const fs::path file = folder.files().at(0);
+    std::vector<std::string> said;
+    RunContext ctx;
+    ctx.onMessage = [&](MessageLevel, const std::string& text) { said.push_back(text); };
+    setByte(file, 7, '3');
+    CHECK(same(answers(BlockIndex::build(field, options, ctx), *field), expected));
+    CHECK(said == std::vector<std::string>{
+                      file.string() + ": is a search index of format 3, of another version of vdb_synth; "
+                                      "this one reads format 2; it is rebuilt"});
+    said.clear();
+    setByte(file, 0, 'x');
+    CHECK(same(answers(BlockIndex::build(field, options, ctx), *field), expected));
+    CHECK(said == std::vector<std::string>{file.string() + ": is no search index; it is rebuilt"});
+}
+
 TEST_CASE("Block index file: a folder that is not there is an error", "[search]") {
     BlockIndexOptions options;
     options.block = 8;

@@ -99,6 +99,8 @@ struct Command {
     void (*run)(Run&);              ///< checks its options before it reads a file
     bool inputsAreOutputs = false;  ///< its inputs are the names of the files it writes
     bool runsOthers = false;  ///< runs other commands as processes of their own, and watches these itself
+    bool ofTheProgram =
+        false;  ///< tells of the program itself: in its process, under the limits it was given
 };
 
 /// The only registry of commands.
@@ -113,6 +115,6 @@ std::string helpText(const Command& command);
 void printLine(const std::string& text);
 
 extern const Command kAnalogy, kCompare, kConvert, kInfo, kCrop, kMask, kMatch, kSynth, kTexture, kRepeat,
-    kRender, kMake, kRelief, kReliefExtract, kPatch, kBatch;
+    kRender, kMake, kRelief, kReliefExtract, kPatch, kBatch, kDoctor;
 
 }  // namespace vdbsynth::cli

@@ -4,8 +4,8 @@ namespace vdbsynth::cli {
 
 const std::vector<const Command*>& commands() {
     static const std::vector<const Command*> all{
-        &kConvert, &kInfo,   &kCrop,    &kMask,   &kMatch, &kSynth,  &kAnalogy,       &kPatch,
-        &kTexture, &kRepeat, &kCompare, &kRender, &kMake,  &kRelief, &kReliefExtract, &kBatch};
+        &kConvert, &kInfo,    &kCrop,   &kMask, &kMatch,  &kSynth,         &kAnalogy, &kPatch, &kTexture,
+        &kRepeat,  &kCompare, &kRender, &kMake, &kRelief, &kReliefExtract, &kBatch,   &kDoctor};
     return all;
 }
 

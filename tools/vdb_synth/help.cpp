@@ -8,26 +8,6 @@ namespace {
 
 constexpr std::size_t kColumn = 30, kWidth = 110;
 
-const char* headingOf(Group group) {
-    switch (group) {
-        case Group::Result:
-            return "Result";
-        case Group::Method:
-            return "Method";
-        case Group::Controls:
-            return "Controls";
-        case Group::Output:
-            return "Output";
-        case Group::Input:
-            return "Input models";
-        case Group::Raster:
-            return "Images and volumes as input";
-        case Group::Running:
-            return "Running";
-    }
-    return "";
-}
-
 // Breaks lines at kWidth columns; each begins at kColumn.
 std::string wrapped(const std::string& text) {
     std::string lines;

@@ -1,8 +1,9 @@
 #include "tools/vdb_synth/command.h"
-#include "tools/vdb_synth/version.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/printable_text.h"
+#include "tools/vdb_synth/describe/about.h"
+#include "tools/vdb_synth/doctor/doctor_report.h"
 #include "tools/vdb_synth/options.h"
 
 #include <algorithm>
@@ -15,20 +16,6 @@
 
 namespace vdbsynth::cli {
 namespace {
-
-std::string overview() {
-    std::string text =
-        "vdb_synth makes new geometry from examples.\n\nUsage: vdb_synth COMMAND INPUTS -o OUTPUT "
-        "[options]\n\n";
-    for (const Command* command : commands()) {
-        std::string name = command->name;
-        name.resize(16, ' ');  // the longest and two
-        text += "  " + name + command->summary + "\n";
-    }
-    return text +
-           "\nvdb_synth COMMAND --help lists its options. Exit codes: 0 done, 1 unusable input, 2 bad "
-           "option, 3 bad file, 130 and 143 stopped.\n";
-}
 
 int fail(const Error& error, const std::string& command) {
     const std::string text = printableText(inFlags(error.what(), command));
@@ -72,7 +59,7 @@ int execute(const Command& command, const Arguments& arguments, const Supervisor
             FrameCache* frames = nullptr) {
     try {
         Run run(command, arguments, line, frames);
-        limitMemory(run.context.maxMemory);
+        if (!command.ofTheProgram) limitMemory(run.context.maxMemory);
         try {
             command.run(run);
         } catch (const Error& error) {
@@ -116,17 +103,17 @@ int dispatch(char** argv, const std::string& name, const std::vector<std::string
         std::fprintf(stderr, "%s", overview().c_str());
         return 2;
     }
-    if (name == "--help" || name == "-help" || name == "-h" || name == "help") {
-        std::printf("%s", overview().c_str());
-        return printed();
-    }
-    if (name == "--version" || name == "-version") {
-        std::printf("vdb_synth %s (OpenVDB %s)\n", kVersion, kOpenVdbVersion);
+    if (isAboutProgram(name)) {
+        try {
+            std::printf("%s", aboutProgram(name, words).c_str());
+        } catch (const Error& error) {
+            return fail(error, "");
+        }
         return printed();
     }
     const Command* command = findCommand(name);
     if (!command) {
-        std::vector<std::string> names;
+        std::vector<std::string> names{"help", "completion"};
         for (const Command* known : commands()) names.push_back(known->name);
         const std::string near = nearestName(name, names);
         return fail(Error(ErrorCode::InvalidOption,
@@ -142,7 +129,7 @@ int dispatch(char** argv, const std::string& name, const std::vector<std::string
             return printed();
         }
         if (arguments.has("version")) {
-            std::printf("vdb_synth %s (OpenVDB %s)\n", kVersion, kOpenVdbVersion);
+            std::printf("%s", versionText().c_str());
             return printed();
         }
         mergeConfig(arguments);
@@ -158,7 +145,7 @@ int dispatch(char** argv, const std::string& name, const std::vector<std::string
         return arguments.has("frames") ? executeFrames(*command, arguments, line)
                                        : execute(*command, arguments, line);
     };
-    if (arguments.has("no-supervisor") || command->runsOthers) {
+    if (arguments.has("no-supervisor") || command->runsOthers || command->ofTheProgram) {
         installStopHandlers();
         return work(SupervisorLine());
     }

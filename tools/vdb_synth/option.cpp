@@ -99,6 +99,26 @@ bool writesPath(const Option& option) {
     return option.kind == Kind::Output || option.kind == Kind::Folder;
 }
 
+const char* headingOf(Group group) {
+    switch (group) {
+        case Group::Result:
+            return "Result";
+        case Group::Method:
+            return "Method";
+        case Group::Controls:
+            return "Controls";
+        case Group::Output:
+            return "Output";
+        case Group::Input:
+            return "Input models";
+        case Group::Raster:
+            return "Images and volumes as input";
+        case Group::Running:
+            return "Running";
+    }
+    return "";
+}
+
 std::string rangeText(const Option& option) {
     const bool numbers = option.kind == Kind::Whole || option.kind == Kind::Lengths ||
                          option.kind == Kind::Real || option.kind == Kind::WholeTriple ||

@@ -111,6 +111,9 @@ struct Option {
     }
 };
 
+/// The heading of a group in --help and in manual pages.
+const char* headingOf(Group group);
+
 /// "longest-run" as "longestRun".
 std::string camelCase(const std::string& name);
 

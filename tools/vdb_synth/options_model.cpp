@@ -174,7 +174,7 @@ std::vector<Option> rasterTable() {
 }
 
 std::vector<Option> outputTable() {
-    const Names json{"info", "match", "compare"};
+    const Names json{"info", "match", "compare", "doctor"};
     Option map = output("source-map", "[FILE.vdb]", {"vdb"});
     map.valueOptional = true;
     return {
@@ -207,7 +207,7 @@ std::vector<Option> outputTable() {
             .in(Group::Output)
             .ofTheRun()
             .says("print JSON instead of text")
-            .takenBy({"info", "compare"}),
+            .takenBy({"info", "compare", "doctor"}),
         flag("json")
             .in(Group::Output)
             .ofTheRun()

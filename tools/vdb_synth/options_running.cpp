@@ -7,10 +7,10 @@ namespace vdbsynth::cli {
 std::vector<Option> runningOptionTable() {
     const std::vector<std::string> every{"convert", "info",           "crop",   "mask",    "match",  "synth",
                                          "analogy", "texture",        "repeat", "compare", "render", "make",
-                                         "relief",  "relief-extract", "patch",  "batch"};
+                                         "relief",  "relief-extract", "patch",  "batch",   "doctor"};
     std::vector<std::string> sequences;
     for (const std::string& command : every)
-        if (command != "make" && command != "batch") sequences.push_back(command);
+        if (command != "make" && command != "batch" && command != "doctor") sequences.push_back(command);
     std::vector<Option> table{
         option(Kind::Seed, "seed", "N")
             .says("seed of everything random")
@@ -49,7 +49,7 @@ std::vector<Option> runningOptionTable() {
         flag("quiet").shortly('q').says("errors and warnings only").takenBy(every),
         flag("verbose").shortly('v').says("print each step").takenBy(every),
         flag("help").shortly('h').says("this text").takenBy(every),
-        flag("version").says("versions of vdb_synth and OpenVDB").takenBy(every),
+        flag("version").says("versions of vdb_synth and of the libraries it runs with").takenBy(every),
     };
     // The seed has a metadata key of its own.
     for (Option& option : table) option.in(Group::Running).ofTheRun();

@@ -7,6 +7,7 @@
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
+#include "libvdbsynth/vdb/read/metadata_format.h"
 #include "tools/vdb_synth/options.h"
 #include "tools/vdb_synth/stop_flag.h"
 #include "tools/vdb_synth/surface_json.h"
@@ -217,7 +218,8 @@ FrameCache* Run::frames() const {
 VdbMetadata Run::metadata() const {
     nlohmann::json inputs = nlohmann::json::array();
     for (const auto& [name, hash] : mImpl->inputs) inputs.push_back({{"name", name}, {"hash", hash}});
-    return {{"vdbsynth:version", kVersion},
+    return {{kMetadataFormatKey, std::to_string(kMetadataFormat)},
+            {"vdbsynth:version", kVersion},
             {"vdbsynth:command", mImpl->command.name},
             {"vdbsynth:options", Impl::normalisedOptions(arguments).dump(
                                      -1, ' ', false, nlohmann::json::error_handler_t::replace)},

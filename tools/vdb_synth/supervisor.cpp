@@ -106,9 +106,21 @@ int reportDeath(const Child& child, int signal, bool hung) {
         return 3;
     }
     std::fprintf(stderr,
-                 "%sinternal error (signal %d); nothing was written; please report the command line\n",
+                 "%sinternal error (signal %d); nothing was written; please report the "
+                 "command line and what vdb_synth doctor prints\n",
                  program, signal);
     return 1;
+}
+
+// waitpid for the child. A container's process 1 is given the processes that lost their parents: they are
+// waited for too, or they stay as zombies.
+pid_t waitFor(const Child& child, int& status, int options) {
+    for (;;) {
+        int one = 0;
+        const pid_t ended = ::waitpid(-1, &one, options);
+        if (ended == child.process) status = one;
+        if (ended == child.process || ended <= 0) return ended;
+    }
 }
 
 int watch(Child& child, int file) {
@@ -119,11 +131,11 @@ int watch(Child& child, int file) {
         pollfd wait{file, POLLIN, 0};
         ::poll(&wait, 1, 200);
         readMessages(child, file);
-        const pid_t ended = ::waitpid(child.process, &status, WNOHANG);
+        const pid_t ended = waitFor(child, status, WNOHANG);
         if (ended == child.process || (ended < 0 && errno == ECHILD)) break;
         if (wait.revents & POLLHUP) {
             // The child closed its end: it is about to end.
-            if (::waitpid(child.process, &status, 0) == child.process) break;
+            if (waitFor(child, status, 0) == child.process) break;
         }
         if (gSignal && !asked) {
             asked = true;

@@ -8,6 +8,7 @@
 #include "tools/vdb_synth/batch/job_manifest.h"
 #include "tools/vdb_synth/batch/referred_files.h"
 #include "tools/vdb_synth/batch/status_page.h"
+#include "tools/vdb_synth/version.h"
 
 using namespace vdbsynth;
 using namespace vdbsynth::cli::batch;
@@ -149,6 +150,34 @@ TEST_CASE("Manifest: what was put comes back, a damaged one is said", "[tools]")
     }
     CHECK(warnings == 5);
     CHECK(test::thrownBy([&] { Manifest(folder.path("no/m.json"), ctx).save(); }).code == int(ErrorCode::Io));
+}
+
+TEST_CASE("Manifest: another format and another version of the program are said, each in one line",
+          "[tools]") {
+    const test::TemporaryFolder folder;
+    std::vector<std::pair<MessageLevel, std::string>> said;
+    RunContext ctx;
+    ctx.onMessage = [&](MessageLevel level, const std::string& text) { said.emplace_back(level, text); };
+    const std::string path = folder.write("m.json", R"({"format": 2, "version": "9.0.0", "jobs": {}})");
+    CHECK(Manifest(path, ctx).find("a") == nullptr);
+    REQUIRE(said.size() == 1);
+    CHECK(said[0].first == MessageLevel::Warning);
+    CHECK(said[0].second ==
+          path +
+              ": is of format 2, written by vdb_synth 9.0.0; this version reads format 1: it is "
+              "made anew and all jobs run");
+    said.clear();
+    folder.write("m.json", R"({"format": 1, "version": "0.0.1", "jobs": {}})");
+    CHECK(Manifest(path, ctx).find("a") == nullptr);
+    REQUIRE(said.size() == 1);
+    CHECK(said[0].first == MessageLevel::Note);
+    CHECK(said[0].second ==
+          path + ": was written by vdb_synth 0.0.1; with " + cli::kVersion + " all jobs run again");
+    said.clear();
+    Manifest(path, ctx).save();
+    said.clear();
+    CHECK(Manifest(path, ctx).find("a") == nullptr);
+    CHECK(said.empty());
 }
 
 TEST_CASE("isCurrent: outputs by their content", "[tools]") {

@@ -2,6 +2,7 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/hash.h"
+#include "libvdbsynth/base/printable_text.h"
 #include "libvdbsynth/io/output_set.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/readers/whole_file.h"
@@ -76,7 +77,19 @@ Manifest::Manifest(const std::string& path, const RunContext& ctx) : mPath(path)
     if (::access(path.c_str(), F_OK) != 0) return;
     try {
         const Json json = parseJobText(path, readWholeFile(path), false);
-        if (json.at("format").get<int>() != kFormat) throw Error(ErrorCode::BadData, "is of another format");
+        const int format = json.at("format").get<int>();
+        const std::string version = json.value("version", std::string("of an unknown version"));
+        if (format != kFormat) {
+            message(ctx, MessageLevel::Warning,
+                    path + ": is of format " + std::to_string(format) + ", written by vdb_synth " +
+                        printableText(version, 20) + "; this version reads format " +
+                        std::to_string(kFormat) + ": it is made anew and all jobs run");
+            return;
+        }
+        if (version != kVersion)
+            message(ctx, MessageLevel::Note,
+                    path + ": was written by vdb_synth " + printableText(version, 20) + "; with " + kVersion +
+                        " all jobs run again");
         for (const auto& [name, entry] : json.at("jobs").items()) {
             JobRecord record;
             record.fingerprint = entry.at("fingerprint").get<std::string>();

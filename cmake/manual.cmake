@@ -1,0 +1,28 @@
+# Lets the built program write its manual pages and the words for the shells.
+# Usage: cmake -DPROGRAM=vdb_synth -DFOLDER=share -P manual.cmake
+function(write_answer file)
+  execute_process(COMMAND ${PROGRAM} ${ARGN} OUTPUT_VARIABLE text RESULT_VARIABLE code)
+  if(NOT code EQUAL 0)
+    message(FATAL_ERROR "${PROGRAM} ${ARGN} failed (${code})")
+  endif()
+  file(WRITE ${FOLDER}/${file} "${text}")
+endfunction()
+
+execute_process(COMMAND ${PROGRAM} --help OUTPUT_VARIABLE overview COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL "\n  [a-z-]+  " commands "${overview}")
+file(REMOVE_RECURSE ${FOLDER})
+write_answer(man/vdb_synth.1 help --man)
+foreach(command ${commands})
+  string(STRIP "${command}" command)
+  write_answer(man/vdb_synth-${command}.1 help --man ${command})
+endforeach()
+write_answer(completion/vdb_synth completion bash)
+write_answer(completion/_vdb_synth completion zsh)
+write_answer(completion/vdb_synth.fish completion fish)
+# As Debian wants it; man reads both.
+find_program(GZIP gzip)
+if(GZIP)
+  file(GLOB pages ${FOLDER}/man/*.1)
+  execute_process(COMMAND ${GZIP} -9n ${pages} COMMAND_ERROR_IS_FATAL ANY)
+endif()
+file(WRITE ${FOLDER}/made "")

@@ -73,7 +73,7 @@ void replaceFile(const std::string& path, const std::string& content) {
 }
 
 Manifest::Manifest(const std::string& path, const RunContext& ctx) : mPath(path) {
-    if (::access(path.c_str(), F_OK) != 0) return;
+    if (path.empty() || ::access(path.c_str(), F_OK) != 0) return;
     try {
         const Json json = parseJobText(path, readWholeFile(path), false);
         if (json.at("format").get<int>() != kFormat) throw Error(ErrorCode::BadData, "is of another format");
@@ -103,6 +103,7 @@ void Manifest::put(const std::string& job, JobRecord record) {
 }
 
 void Manifest::save() {
+    if (mPath.empty()) return;
     Json jobs = Json::object();
     for (const auto& [name, record] : mRecords)
         jobs[name] = {{"fingerprint", record.fingerprint},

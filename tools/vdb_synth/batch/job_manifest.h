@@ -37,7 +37,8 @@ std::string fingerprintOf(const Plan& plan, const Job& job, FileHashes& hashes);
 /// The records of a batch in LOGS/manifest.json, which is replaced as a whole.
 class Manifest {
 public:
-    /// Reads the file; one that is damaged is said (Warning) and begun anew: its jobs run again.
+    /// Reads the file; one that is damaged is said (Warning) and begun anew: its jobs run again. An empty
+    /// path stands for no file: `save` writes none.
     Manifest(const std::string& path, const RunContext& ctx);
 
     /// Null if the job was never done.

@@ -1,0 +1,349 @@
+#include "tools/vdb_synth/batch/slurm/slurm_executor.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/number_text.h"
+#include "tools/vdb_synth/batch/job_run_steps.h"
+#include "tools/vdb_synth/batch/slurm/slurm_task.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include <unistd.h>
+
+namespace vdbsynth::cli::batch {
+namespace {
+
+double secondsBetween(std::chrono::steady_clock::time_point from, std::chrono::steady_clock::time_point to) {
+    return std::chrono::duration<double>(to - from).count();
+}
+
+// Slurm's patterns in names of files begin with %.
+std::string withoutPatterns(const std::string& path) {
+    std::string text;
+    for (const char c : path) text += c == '%' ? std::string("%%") : std::string(1, c);
+    return text;
+}
+
+// The beginning of a job's name, for people who look at the queue.
+std::string plainName(const std::string& entry) {
+    std::string name;
+    for (const char c : entry)
+        if (std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '-' || c == '_') name += c;
+    return name.empty() ? "job" : name;
+}
+
+}  // namespace
+
+SlurmExecutor::SlurmExecutor(const Batch& batch)
+    : mBatch(batch), mLogs(std::filesystem::absolute(batch.options.logs).lexically_normal().string()) {
+    attach();
+}
+
+bool SlurmExecutor::begin(std::size_t job, bool again) {
+    mToSubmit[job] = again;
+    return true;
+}
+
+long SlurmExecutor::megabytesFor(std::size_t i, bool again) const {
+    if (again) return kAllMemory;
+    const Job& job = mBatch.plan.jobs[i];
+    const std::uint64_t most = mBatch.options.slurm->memory;
+    // A tenth more than it plans with, see runTask.
+    if (job.arguments.has("max-memory"))
+        return long(job.arguments.wide("max-memory") / 9 * 10 / (1 << 20)) + 64;
+    const JobRecord* record = mBatch.manifest.find(job.name);
+    const long limit = long(most / (1 << 20));
+    if (!record || record->peakBytes == 0) return limit;
+    return limit > 0 ? std::min(roomFor(record->peakBytes), limit) : roomFor(record->peakBytes);
+}
+
+ArrayRequest SlurmExecutor::requestFor(std::size_t i, bool again) const {
+    const Job& job = mBatch.plan.jobs[i];
+    ArrayRequest request;
+    request.job = i;
+    request.entry = job.entry;
+    for (const std::size_t before : job.after)
+        if (mHeld.count(before) || mToSubmit.count(before)) request.needs.push_back(before);
+    const int own = job.arguments.has("threads") ? job.arguments.whole("threads") : 0;
+    request.cores = own > 0 ? own : mBatch.options.slurm->threads;
+    request.megabytes = megabytesFor(i, again);
+    return request;
+}
+
+// What cannot be handed over now, as a queue that is full, is tried again while other jobs run.
+void SlurmExecutor::submit() {
+    if (mToSubmit.empty() || Clock::now() < mRetry) return;
+    if (mLargest == 0) mLargest = largestIndex();
+    std::vector<ArrayRequest> requests;
+    for (const auto& [job, again] : mToSubmit) requests.push_back(requestFor(job, again));
+    std::map<std::size_t, ArrayPlace> placed;
+    for (const auto& [job, held] : mHeld) placed[job] = held.place;
+    const std::map<std::size_t, bool> again = mToSubmit;
+    for (const ArrayPlan& plan : arraysOf(requests, placed, mLargest, mNext)) try {
+            hand(plan, again);
+        } catch (const Error& error) {
+            if (mHeld.empty()) throw;
+            if (mSaid.insert(error.what()).second)
+                message(mBatch.context, MessageLevel::Warning,
+                        std::string(error.what()) + "; jobs that wait for this are handed over later");
+            mRetry = Clock::now() + std::chrono::seconds(10);
+            return;
+        }
+}
+
+void SlurmExecutor::hand(const ArrayPlan& plan, const std::map<std::size_t, bool>& again) {
+    if (mSubmission.arrays.empty()) {
+        mSubmission = newSubmission();
+        removeFiles(true);
+    }
+    std::error_code problem;
+    std::filesystem::create_directories(mLogs + "/slurm", problem);
+    TaskFile tasks{mSubmission.token, plan.number, mLogs, {}, {}};
+    tasks.plan.path = mBatch.plan.path;
+    tasks.plan.folder = std::filesystem::absolute(mBatch.plan.folder).lexically_normal().string();
+    for (const auto& [index, job] : plan.tasks) {
+        tasks.indices.push_back(index);
+        tasks.plan.jobs.push_back(mBatch.plan.jobs[job]);
+    }
+    writeTaskFile(taskFilePath(mLogs, mSubmission.token, plan.number), tasks);
+    const std::string name =
+        plainName(plan.entry) + "-" + mSubmission.token + "-" + std::to_string(plan.number);
+    mSubmission.arrays.push_back({plan.number, name, ""});
+    writeSubmission(mLogs, mSubmission);
+    mSubmission.arrays.back().id = submitArray(plan, name);
+    mSizes[plan.number] = plan.tasks.size();
+    for (const auto& [index, job] : plan.tasks) {
+        mHeld[job] = {{plan.number, index}, again.at(job)};
+        mToSubmit.erase(job);
+    }
+    writeSubmission(mLogs, mSubmission);
+    message(mBatch.context, MessageLevel::Detail,
+            plan.entry + ": " + countText(plan.tasks.size(), "job") + " in array " +
+                mSubmission.arrays.back().id);
+}
+
+// The id; where sbatch fails, the array is unknown to Slurm, or its id is found by its name.
+std::string SlurmExecutor::submitArray(const ArrayPlan& plan, const std::string& name) {
+    const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
+    const std::string script =
+        "#!/bin/sh\nexec " +
+        shellText({program, "batch", taskFilePath(mLogs, mSubmission.token, plan.number)}) +
+        " --progress=off --task \"$SLURM_ARRAY_TASK_ID\"\n";
+    try {
+        return submitted(argumentsOf(plan, name), script);
+    } catch (const Error&) {
+        bool answered = false;
+        const std::string id = arrayNamed(name, answered);
+        if (answered && !id.empty()) return id;
+        // Unknown whether it is there: its name stays for the next batch, which asks again.
+        if (!answered) throw;
+        mSubmission.arrays.pop_back();
+        if (mSubmission.arrays.empty())
+            ::unlink(submissionPath(mLogs).c_str());
+        else
+            writeSubmission(mLogs, mSubmission);
+        throw;
+    }
+}
+
+std::vector<std::string> SlurmExecutor::argumentsOf(const ArrayPlan& plan, const std::string& name) const {
+    const SlurmOptions& options = *mBatch.options.slurm;
+    std::vector<std::string> words;
+    const auto add = [&](const std::string& option, const std::string& value) {
+        if (!value.empty()) words.push_back("--" + option + "=" + value);
+    };
+    std::map<int, std::string> ids;
+    for (const SubmittedArray& array : mSubmission.arrays) ids[array.number] = array.id;
+    add("partition", options.partition);
+    add("time", options.time);
+    add("job-name", name);
+    add("array", indexText(plan.tasks) + (options.atOnce > 0 ? "%" + std::to_string(options.atOnce) : ""));
+    add("dependency", dependencyText(plan, ids, mSizes));
+    add("kill-on-invalid-dep", "yes");
+    words.push_back("--requeue");
+    add("output", withoutPatterns(mLogs) + "/slurm/%A_%a.out");
+    add("open-mode", "append");
+    add("chdir", std::filesystem::absolute(mBatch.plan.folder).lexically_normal().string());
+    add("ntasks", "1");
+    add("cpus-per-task", std::to_string(plan.cores));
+    // Those of the user's that say the same win.
+    const bool own = std::any_of(options.arguments.begin(), options.arguments.end(),
+                                 [](const std::string& word) { return word.compare(0, 5, "--mem") == 0; });
+    if (plan.megabytes != 0 && !own)
+        add("mem", plan.megabytes == kAllMemory ? "0" : std::to_string(plan.megabytes) + "M");
+    words.insert(words.end(), options.arguments.begin(), options.arguments.end());
+    return words;
+}
+
+const std::string& SlurmExecutor::idOf(int array) const {
+    static const std::string none;
+    for (const SubmittedArray& one : mSubmission.arrays)
+        if (one.number == array) return one.id;
+    return none;
+}
+
+std::vector<std::string> SlurmExecutor::heldIds() const {
+    std::set<int> numbers;
+    for (const auto& [job, held] : mHeld) numbers.insert(held.place.array);
+    std::vector<std::string> ids;
+    for (const int number : numbers) ids.push_back(idOf(number));
+    return ids;
+}
+
+std::string SlurmExecutor::heldText(const std::string& sign) const {
+    std::string text;
+    for (const std::string& id : heldIds()) text += (text.empty() ? "" : sign) + id;
+    return text;
+}
+
+void SlurmExecutor::withdraw(const std::vector<std::size_t>& jobs) {
+    for (const std::size_t job : jobs) {
+        mToSubmit.erase(job);
+        const auto held = mHeld.find(job);
+        if (held != mHeld.end()) held->second.withdrawn = true;
+    }
+}
+
+std::vector<JobNews> SlurmExecutor::poll() {
+    // Every second at first, every ten after five minutes: the controller serves a whole site.
+    const Clock::time_point now = Clock::now();
+    const double pause = std::clamp(secondsBetween(mBegan, now) / 30, 1.0, 10.0);
+    if (mHeld.empty() || secondsBetween(mAsked, now) < pause) return {};
+    bool answered = false;
+    std::string problem;
+    SlurmTasks tasks = queuedTasks(heldIds(), answered, problem);
+    mAsked = Clock::now();
+    if (!answered) {
+        if (mSaid.insert("squeue").second)
+            message(mBatch.context, MessageLevel::Warning, problem + "; it is asked again");
+        return {};
+    }
+    mSaid.erase("squeue");
+    cancelWithdrawn(tasks);
+    std::vector<JobNews> news;
+    std::vector<std::size_t> gone;
+    for (auto& [job, held] : mHeld) {
+        const auto found = tasks.find({idOf(held.place.array), held.place.index});
+        const SlurmTask* task = found == tasks.end() ? nullptr : &found->second;
+        std::optional<JobNews> one;
+        if (task && !isEndState(task->state)) {
+            held.ended.reset();
+            held.found = false;
+            one = newsOf(job, held, task);
+            say(*task, job);
+        } else if ((one = endOf(job, held, task))) {
+            gone.push_back(job);
+        }
+        if (one) news.push_back(*one);
+    }
+    for (const std::size_t job : gone) mHeld.erase(job);
+    submit();
+    return news;
+}
+
+JobNews SlurmExecutor::newsOf(std::size_t job, const Held&, const SlurmTask* task) {
+    JobNews news;
+    news.job = job;
+    news.state = isRunState(task->state) ? JobState::Running : JobState::Waiting;
+    if (news.state == JobState::Running) news.seconds = task->seconds;
+    return news;
+}
+
+// Why a job waits, where it may wait for ever.
+void SlurmExecutor::say(const SlurmTask& task, std::size_t job) {
+    static const std::set<std::string> usual{"",         "None",     "Dependency",        "Resources",
+                                             "Priority", "Cleaning", "JobArrayTaskLimit", "BeginTime",
+                                             "Prolog"};
+    if (task.state != "PENDING" || usual.count(task.reason) || !mSaid.insert("reason " + task.reason).second)
+        return;
+    message(mBatch.context, MessageLevel::Warning,
+            mBatch.plan.jobs[job].name + ": waits in Slurm's queue: " + task.reason);
+}
+
+void SlurmExecutor::cancelWithdrawn(const SlurmTasks& tasks) {
+    std::vector<std::string> words;
+    for (const auto& [job, held] : mHeld) {
+        const auto found = tasks.find({idOf(held.place.array), held.place.index});
+        if (held.withdrawn && found != tasks.end() && found->second.state == "PENDING")
+            words.push_back(found->first.first + "_" + std::to_string(held.place.index));
+    }
+    cancelTasks(words);
+}
+
+std::vector<JobNews> SlurmExecutor::stop(int, bool failed) {
+    std::vector<JobNews> news;
+    for (const auto& [job, again] : mToSubmit) {
+        JobNews one;
+        one.job = job;
+        one.returned = true;
+        news.push_back(one);
+    }
+    mToSubmit.clear();
+    if (mHeld.empty()) return news;
+    if (failed || mBatch.options.slurm->cancel) {
+        for (const JobNews& one : cancelAll()) news.push_back(one);
+        return news;
+    }
+    message(mBatch.context, MessageLevel::Note,
+            countText(mHeld.size(), "job") +
+                " stay in Slurm's queue; the same command follows them, scancel " + heldText(" ") +
+                " ends them");
+    return news;
+}
+
+std::vector<JobNews> SlurmExecutor::cancelAll() {
+    cancelTasks(heldIds());
+    std::vector<JobNews> news;
+    const Clock::time_point began = Clock::now();
+    while (!mHeld.empty() && secondsBetween(began, Clock::now()) < 60) {
+        bool answered = false;
+        std::string problem;
+        const SlurmTasks tasks = queuedTasks(heldIds(), answered, problem);
+        std::vector<std::size_t> gone;
+        for (auto& [job, held] : mHeld) {
+            const auto found = tasks.find({idOf(held.place.array), held.place.index});
+            if (!answered || (found != tasks.end() && !isEndState(found->second.state))) continue;
+            held.withdrawn = true;
+            std::optional<JobNews> one = endOf(job, held, found == tasks.end() ? nullptr : &found->second);
+            if (!one) continue;
+            if (one->returned) {
+                one->returned = false;
+                one->state = JobState::Stopped;
+                one->error = "interrupted; nothing was written";
+            }
+            news.push_back(*one);
+            gone.push_back(job);
+        }
+        for (const std::size_t job : gone) mHeld.erase(job);
+        if (!mHeld.empty()) ::usleep(300000);
+    }
+    if (!mHeld.empty())
+        message(mBatch.context, MessageLevel::Warning,
+                "Slurm has not ended all jobs yet (arrays " + heldText(", ") + ")");
+    return news;
+}
+
+void SlurmExecutor::close() {
+    const bool unknown = std::any_of(mSubmission.arrays.begin(), mSubmission.arrays.end(),
+                                     [](const SubmittedArray& array) { return array.id.empty(); });
+    if (busy() || unknown || ::access(submissionPath(mLogs).c_str(), F_OK) != 0) return;
+    ::unlink(submissionPath(mLogs).c_str());
+    removeFiles(false);
+}
+
+// Of tasks that have ended. What Slurm itself wrote stays with the logs until the next batch, if it is not
+// empty.
+void SlurmExecutor::removeFiles(bool all) const {
+    const std::filesystem::path folder = mLogs + "/slurm";
+    std::error_code problem;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, problem)) {
+        std::error_code ignored;
+        if (all || entry.path().extension() != ".out" ||
+            std::filesystem::file_size(entry.path(), ignored) == 0)
+            ::unlink(entry.path().c_str());
+    }
+    ::rmdir(folder.c_str());
+}
+
+}  // namespace vdbsynth::cli::batch

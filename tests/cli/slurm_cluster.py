@@ -11,7 +11,7 @@ import time
 
 DAEMONS = ("munged", "slurmctld", "slurmd", "sbatch")
 
-# Processes are found by their parents, as a container may have no control groups. Short times, as a test waits for them.
+# Processes are found by their parents, as a container may have no control groups. A job that is put back into the queue waits for cred_expire.
 CONFIGURATION = """\
 ClusterName=test
 SlurmctldHost={host}(127.0.0.1)
@@ -19,7 +19,7 @@ SlurmctldPort={controller}
 SlurmUser=root
 SlurmdUser=root
 AuthType=auth/munge
-AuthInfo=socket={folder}/munge.socket
+AuthInfo=socket={folder}/munge.socket,cred_expire=6
 CryptoType=crypto/munge
 StateSaveLocation={folder}/state
 SlurmdSpoolDir={folder}/spool.%n
@@ -35,7 +35,7 @@ SwitchType=switch/none
 ReturnToService=2
 SelectType=select/cons_tres
 SelectTypeParameters=CR_Core_Memory
-SchedulerParameters=sched_interval=1,batch_sched_delay=0,bf_interval=1,sched_min_interval=0,requeue_delay=1
+SchedulerParameters=sched_interval=1,batch_sched_delay=0,bf_interval=1,sched_min_interval=0
 SlurmdParameters=config_overrides
 KillWait=5
 MinJobAge={age}
@@ -103,8 +103,8 @@ class Cluster:
         self.processes[as_name or name] = subprocess.Popen([name, *words], env=self.environment, stdin=subprocess.DEVNULL, stdout=log, stderr=log)
         log.close()
 
-    def start_controller(self):
-        self.start("slurmctld", "-D", "-i")
+    def start_controller(self, recover=False):
+        self.start("slurmctld", "-D", *([] if recover else ["-i"]))
 
     def start_node(self, node):
         self.start("slurmd", "-D", "-N", node, as_name=node)

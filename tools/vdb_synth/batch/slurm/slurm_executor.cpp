@@ -25,6 +25,11 @@ std::string withoutPatterns(const std::string& path) {
     return text;
 }
 
+std::string fullPath(const std::string& path) {
+    const std::filesystem::path full = std::filesystem::absolute(path).lexically_normal();
+    return (full.has_filename() ? full : full.parent_path()).string();
+}
+
 // The beginning of a job's name, for people who look at the queue.
 std::string plainName(const std::string& entry) {
     std::string name;
@@ -35,8 +40,7 @@ std::string plainName(const std::string& entry) {
 
 }  // namespace
 
-SlurmExecutor::SlurmExecutor(const Batch& batch)
-    : mBatch(batch), mLogs(std::filesystem::absolute(batch.options.logs).lexically_normal().string()) {
+SlurmExecutor::SlurmExecutor(const Batch& batch) : mBatch(batch), mLogs(fullPath(batch.options.logs)) {
     attach();
 }
 
@@ -101,7 +105,7 @@ void SlurmExecutor::hand(const ArrayPlan& plan, const std::map<std::size_t, bool
     std::filesystem::create_directories(mLogs + "/slurm", problem);
     TaskFile tasks{mSubmission.token, plan.number, mLogs, {}, {}};
     tasks.plan.path = mBatch.plan.path;
-    tasks.plan.folder = std::filesystem::absolute(mBatch.plan.folder).lexically_normal().string();
+    tasks.plan.folder = fullPath(mBatch.plan.folder);
     for (const auto& [index, job] : plan.tasks) {
         tasks.indices.push_back(index);
         tasks.plan.jobs.push_back(mBatch.plan.jobs[job]);
@@ -164,7 +168,7 @@ std::vector<std::string> SlurmExecutor::argumentsOf(const ArrayPlan& plan, const
     words.push_back("--requeue");
     add("output", withoutPatterns(mLogs) + "/slurm/%A_%a.out");
     add("open-mode", "append");
-    add("chdir", std::filesystem::absolute(mBatch.plan.folder).lexically_normal().string());
+    add("chdir", fullPath(mBatch.plan.folder));
     add("ntasks", "1");
     add("cpus-per-task", std::to_string(plan.cores));
     // Those of the user's that say the same win.

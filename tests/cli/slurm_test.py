@@ -48,6 +48,15 @@ class SlurmTest(CliTest):
             self.assertLess(time.monotonic(), end, f"waited for {what}")
             time.sleep(0.05)
 
+    def said_until(self, process, text):
+        """What a batch says up to and with a text."""
+        said = ""
+        while text not in said:
+            line = process.stderr.readline()
+            self.assertTrue(line, said)
+            said += line
+        return said
+
     def results(self):
         return {str(p.relative_to(self.folder)): p.read_bytes() for p in sorted(pathlib.Path(self.folder).rglob("*"))
                 if p.suffix in (".vdb", ".ply")}
@@ -238,7 +247,7 @@ class Cluster(SlurmTest):
         os.killpg(process.pid, signal.SIGINT)
         _, said = process.communicate(timeout=30)
         self.assertEqual(process.returncode, 130, said)
-        self.assertIn("stay in Slurm's queue; the same command follows them, scancel ", said)
+        self.assertIn("left in Slurm's queue: ", said)
         arrays = self.arrays()
         self.assertTrue(self.running("long"))
         # Elsewhere the jobs would be run twice.
@@ -246,8 +255,7 @@ class Cluster(SlurmTest):
         self.assertIn("were handed to Slurm", self.said)
         # A second one is killed, a third follows to the end.
         process = self.start()
-        self.until(lambda: os.path.exists(self.path("j.logs/slurm.json")), "a submission")
-        time.sleep(0.5)
+        self.said_until(process, "handed to Slurm before")
         process.kill()
         process.communicate()
         code, states = self.batch()
@@ -274,10 +282,9 @@ class Cluster(SlurmTest):
     def test_a_changed_job_file(self):
         self.jobs(MAKE)
         process = self.start("--slurm-arguments=--hold")
-        self.until(lambda: self.cluster.queue(), "a job")
+        self.said_until(process, "ball: waits in Slurm's queue: JobHeldUser")
         process.send_signal(signal.SIGINT)
-        _, said = process.communicate(timeout=30)
-        self.assertIn("ball: waits in Slurm's queue: JobHeldUser", said)
+        process.communicate(timeout=30)
         self.jobs({**MAKE, "options": {"resolution": 24}})
         self.assertEqual(self.batch()[0], 2, self.said)
         self.assertIn("was changed after jobs of it were handed to Slurm; end those first: scancel", self.said)

@@ -6,6 +6,7 @@
 #include "tools/vdb_synth/batch/job_manifest.h"
 
 #include <chrono>
+#include <filesystem>
 
 #include <unistd.h>
 
@@ -21,6 +22,11 @@ std::string Submission::idText(const std::string& sign) const {
     for (const SubmittedArray& array : arrays)
         if (!array.id.empty()) text += (text.empty() ? "" : sign) + array.id;
     return text;
+}
+
+std::string fullPath(const std::string& path) {
+    const std::filesystem::path full = std::filesystem::absolute(path).lexically_normal();
+    return (full.has_filename() ? full : full.parent_path()).string();
 }
 
 std::string submissionPath(const std::string& logs) {

@@ -23,6 +23,8 @@ struct Submission {
     std::string idText(const std::string& sign = ", ") const;
 };
 
+/// An absolute path without . and .., and without a / at its end.
+std::string fullPath(const std::string& path);
 std::string submissionPath(const std::string& logs);
 /// The file of an array's tasks, which they read when they start.
 std::string taskFilePath(const std::string& logs, const std::string& token, int number);

@@ -225,6 +225,37 @@ class Cluster(SlurmTest):
         self.assertEqual(self.batch()[1], {"ball": "up to date", "long": "done"})
         self.assertEqual(self.results(), expected)
 
+    def test_memory_that_does_not_suffice(self):
+        mask = {"name": "mask", "command": "mask", "inputs": "ball", "output": "m.vdb",
+                "options": {"center": "0,0,0", "radius": 250, "voxel-size": 1}}
+        self.jobs(mask, {"name": "ask", "command": "info", "inputs": "m.vdb"})
+        code, states = self.batch("--max-memory", "64M")
+        self.assertIn("mask: its share of memory did not suffice; it runs again with all", self.said)
+        self.assertEqual((code, states), (0, {"mask": "done", "ask": "done"}), self.said)
+        self.assert_nothing_left()
+
+    def test_a_queue_that_is_full(self):
+        # The second array is refused at first.
+        self.write("sbatch", "#!/bin/sh\necho >>calls\n[ $(wc -l <calls) = 2 ] && { echo 'sbatch: error: QOSMaxSubmitJobPerUserLimit' >&2; exit 1; }\n"
+                             f"exec {shutil.which('sbatch')} \"$@\"\n")
+        os.chmod(self.path("sbatch"), 0o755)
+        self.jobs(MAKE, {**MAKE, "name": "other", "output": "other.vdb"}, {"name": "ask", "command": "info", "inputs": "other.vdb"})
+        self.environment = dict(self.environment, PATH=self.folder + ":" + self.environment["PATH"])
+        code, states = self.batch()
+        self.assertIn("QOSMaxSubmitJobPerUserLimit; jobs that wait for this are handed over later", self.said)
+        self.assertEqual((code, set(states.values())), (0, {"done"}), self.said)
+        self.assert_nothing_left()
+
+    def test_fail_fast(self):
+        self.write("bad.off", "OFF\n1 1 0\n0 0")
+        self.jobs({"name": "bad", "command": "convert", "inputs": "bad.off", "output": "bad.vdb"},
+                  {**MAKE, "name": "ball${s}", "output": "ball${s}.vdb", "options": {"resolution": 128, "seed": "${s}"}, "matrix": {"s": "1-9"}})
+        code, states = self.batch("--fail-fast", "--jobs", 1)
+        self.assertEqual((code, states["bad"]), (1, "failed"), self.said)
+        self.assertEqual(set(states.values()) - {"failed", "done"}, {"stopped"}, self.said)
+        self.assert_nothing_left()
+        self.assertEqual(self.cluster.queue(), [])
+
     def test_a_cancelled_job(self):
         self.jobs(MAKE, LONG, {"name": "after", "command": "info", "inputs": "long.vdb"})
         process = self.start()

@@ -56,6 +56,7 @@ void SlurmExecutor::withdraw(const std::vector<std::size_t>& jobs) {
 }
 
 std::vector<JobNews> SlurmExecutor::poll() {
+    submit();
     // Every second at first, every ten after five minutes: the controller serves a whole site.
     const Clock::time_point now = Clock::now();
     const double pause = std::clamp(secondsBetween(mBegan, now) / 30, 1.0, 10.0);
@@ -88,7 +89,6 @@ std::vector<JobNews> SlurmExecutor::poll() {
         if (one) news.push_back(*one);
     }
     for (const std::size_t job : gone) mHeld.erase(job);
-    submit();
     return news;
 }
 

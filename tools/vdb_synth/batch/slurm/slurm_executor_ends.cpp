@@ -38,7 +38,7 @@ std::optional<JobNews> SlurmExecutor::endOf(std::size_t i, Held& held, const Slu
         const bool cancelled = !task || task->state == "CANCELLED";
         if (held.found && cancelled && mSaid.insert("cancelled").second)
             message(mBatch.context, MessageLevel::Note,
-                    "jobs that were cancelled in Slurm meanwhile are handed over again");
+                    "jobs that left Slurm's queue without a result meanwhile are handed over again");
         if (held.withdrawn || (held.found && cancelled) || neverSatisfied(i, task)) {
             news.returned = true;
             return news;

@@ -72,7 +72,7 @@ void SlurmExecutor::submit() {
             if (mSaid.insert(error.what()).second)
                 message(mBatch.context, MessageLevel::Warning,
                         std::string(error.what()) + "; jobs that wait for this are handed over later");
-            mRetry = Clock::now() + std::chrono::seconds(10);
+            mRetry = Clock::now() + std::chrono::seconds(5);
             return;
         }
 }

@@ -194,15 +194,21 @@ class Cluster(SlurmTest):
         self.assertEqual((code, states["mesh-1"], states["mesh-2"]), (0, "done", "up to date"), self.said)
         self.assertEqual({name: content for name, content in self.results().items() if name in expected}, expected)
 
-    def test_a_job_killed_and_put_back_into_the_queue(self):
-        self.jobs(MAKE, LONG)
+    def test_jobs_killed_and_put_back_into_the_queue(self):
+        """One by an administrator, one as its node fails."""
+        self.jobs(MAKE, {**LONG, "name": "long-${s}", "output": ["long${s}.vdb", "long${s}.ply"], "options": {"size": "5x,5x,1x", "seed": "${s}"},
+                         "matrix": {"s": "1-2"}})
         expected = self.local_results()
         process = self.start()
-        self.until(lambda: os.path.exists(self.path("j.logs/long.log")), "a long job")
-        time.sleep(0.7)
-        task = self.running("long")
-        self.assertTrue(task, "the long job is too short")
-        self.cluster.run("scontrol", "requeue", task)
+        self.until(lambda: all(os.path.exists(self.path(f"j.logs/long-{s}.log")) for s in (1, 2)), "long jobs")
+        time.sleep(0.5)
+        running = [id for id, state, job in self.cluster.queue() if state == "RUNNING" and job.startswith("long")]
+        self.assertEqual(len(running), 2, "a long job is too short")
+        node = self.cluster.run("squeue", "-h", "-o", "%N", "-j", running[1]).stdout.strip()
+        self.cluster.run("scontrol", "requeue", running[0])
+        self.cluster.run("scontrol", "update", f"NodeName={node}", "State=DOWN", "Reason=test")
+        time.sleep(1)
+        self.cluster.run("scontrol", "update", f"NodeName={node}", "State=RESUME")
         _, said = process.communicate(timeout=100)
         self.assertEqual(process.returncode, 0, said)
         self.assertEqual(self.results(), expected)
@@ -309,6 +315,17 @@ class Cluster(SlurmTest):
         self.assertEqual(self.cluster.queue(), [])
         self.assert_nothing_left()
         self.assertEqual([name for name in self.results()], ["ball.vdb"])
+
+    def test_cancelled_while_nobody_follows(self):
+        self.jobs(MAKE)
+        process = self.start("--slurm-arguments=--hold")
+        self.until(lambda: self.cluster.queue(), "a job")
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=30)
+        self.cluster.run("scancel", "--user=root")
+        self.assertEqual(self.batch(), (0, {"ball": "done"}), self.said)
+        self.assertIn("handed over again", self.said)
+        self.assert_nothing_left()
 
     def test_a_changed_job_file(self):
         self.jobs(MAKE)

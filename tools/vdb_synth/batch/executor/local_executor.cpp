@@ -27,6 +27,7 @@ bool LocalExecutor::begin(std::size_t i, bool again) {
     if (!mProcesses.fits(process.reserved)) return false;
     process.fingerprint = fingerprintOf(mBatch.plan, job, mBatch.hashes);
     makeFolders(mBatch.plan, job, mBatch.context);
+    process.locks = std::make_shared<OutputLocks>(mBatch.plan, job);
     // The same job, smaller: what it took before is no limit for what it may need now.
     const std::uint64_t limit = std::min(std::max(process.reserved, mProcesses.share()), options.memory);
     const std::vector<std::string> words = processWords(job, options, again ? options.memory : limit);

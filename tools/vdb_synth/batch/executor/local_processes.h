@@ -1,10 +1,12 @@
 #pragma once
 #include "tools/vdb_synth/batch/executor/job_process.h"
+#include "tools/vdb_synth/batch/executor/output_locks.h"
 #include "tools/vdb_synth/batch/job_run.h"
 
 #include <chrono>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,8 +16,9 @@ namespace vdbsynth::cli::batch {
 /// A process of this machine: a job, or the picture of a result.
 struct LocalProcess {
     std::size_t job = 0;
-    std::string picture;      ///< empty: the job itself
-    std::string fingerprint;  ///< of the job
+    std::string picture;                   ///< empty: the job itself
+    std::string fingerprint;               ///< of the job
+    std::shared_ptr<OutputLocks> locks{};  ///< of the job
     std::uint64_t reserved = 0;
     std::chrono::steady_clock::time_point began = std::chrono::steady_clock::now();
     Ended ended;  ///< once it has

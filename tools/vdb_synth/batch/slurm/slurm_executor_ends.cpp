@@ -1,6 +1,7 @@
 // How jobs in Slurm's queue ended, and what an earlier batch left there.
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
+#include "tools/vdb_synth/batch/executor/output_locks.h"
 #include "tools/vdb_synth/batch/job_run_steps.h"
 #include "tools/vdb_synth/batch/slurm/slurm_executor.h"
 #include "tools/vdb_synth/batch/slurm/slurm_task.h"
@@ -12,6 +13,15 @@ namespace {
 
 // Shared folders show what another machine wrote only after a while.
 constexpr std::chrono::seconds kGrace{10};
+
+// Those that a killed task left.
+void removeLocks(const Plan& plan, const Job& job) {
+    try {
+        const OutputLocks locks(plan, job);
+    } catch (const Error&) {
+        // Another batch holds them by now, or the folder is gone.
+    }
+}
 
 }  // namespace
 
@@ -49,6 +59,7 @@ std::optional<JobNews> SlurmExecutor::endOf(std::size_t i, Held& held, const Slu
         news.state = JobState::Failed;
         news.error = whyEnded(held, task);
         removeAllTemporaries(mBatch.plan, job, mLogs);
+        removeLocks(mBatch.plan, job);
     }
     if (news.state == JobState::Failed) {
         mFailed.insert(i);

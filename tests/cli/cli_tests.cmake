@@ -10,9 +10,9 @@ endfunction()
 
 add_cli_test(analogy_test Analogy)
 add_cli_test(batch_test Plans Refusals Runs Kills)
-add_cli_test(slurm_test Refusals Cluster)
-# Starts munged, slurmctld and two slurmd; skips where they are not installed (packages.sh all) or it is not run by root.
-set_tests_properties("cli: slurm_test Cluster" PROPERTIES LABELS "cli;slow")
+add_cli_test(slurm_test Refusals Runs Kills)
+# These start munged, slurmctld and two slurmd, and skip where they are not installed (packages.sh all) or not run by root.
+set_tests_properties("cli: slurm_test Runs" "cli: slurm_test Kills" PROPERTIES LABELS "cli;slow")
 add_cli_test(compare_test Compare Libraries Page)
 add_cli_test(options_test Answers Overwriting Help Moved)
 add_cli_test(patch_test Sheets Refused)

@@ -1,7 +1,6 @@
 """A Slurm cluster of this machine alone: munged, slurmctld and two slurmd in a temporary folder, started and stopped by a test."""
 import os
 import pathlib
-import pwd
 import shutil
 import signal
 import socket
@@ -57,8 +56,8 @@ def missing():
 
 
 def free_ports(count):
-    """Ports in a row that nothing listens to."""
-    for first in range(26817, 28000, count):
+    """Ports in a row that nothing listens to; tests that run at once begin at others."""
+    for first in range(26817 + os.getpid() % 1000 * count, 31000, count):
         sockets = [socket.socket() for _ in range(count)]
         try:
             for number, one in enumerate(sockets):

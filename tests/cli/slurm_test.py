@@ -148,6 +148,8 @@ class Cluster(SlurmTest):
         text = self.cluster.run("squeue", "-h", "--states=all", "-o", "%j %Z").stdout
         return {line.split()[0] for line in text.splitlines() if line.split()[1] == self.folder}
 
+
+class Runs(Cluster):
     def test_a_plan_becomes_arrays(self):
         more = {"name": "more-${s}", "command": "synth", "inputs": "ball.vdb", "output": "more${s}.vdb",
                 "options": {"size": "2x,2x,1x", "seed": "${s}"}, "matrix": {"s": "1-3"}}
@@ -194,43 +196,6 @@ class Cluster(SlurmTest):
         self.assertEqual((code, states["mesh-1"], states["mesh-2"]), (0, "done", "up to date"), self.said)
         self.assertEqual({name: content for name, content in self.results().items() if name in expected}, expected)
 
-    def test_jobs_killed_and_put_back_into_the_queue(self):
-        """One by an administrator, one as its node fails."""
-        self.jobs(MAKE, {**LONG, "name": "long-${s}", "output": ["long${s}.vdb", "long${s}.ply"], "options": {"size": "5x,5x,1x", "seed": "${s}"},
-                         "matrix": {"s": "1-2"}})
-        expected = self.local_results()
-        process = self.start()
-        self.until(lambda: all(os.path.exists(self.path(f"j.logs/long-{s}.log")) for s in (1, 2)), "long jobs")
-        time.sleep(0.5)
-        running = [id for id, state, job in self.cluster.queue() if state == "RUNNING" and job.startswith("long")]
-        self.assertEqual(len(running), 2, "a long job is too short")
-        node = self.cluster.run("squeue", "-h", "-o", "%N", "-j", running[1]).stdout.strip()
-        self.cluster.run("scontrol", "requeue", running[0])
-        self.cluster.run("scontrol", "update", f"NodeName={node}", "State=DOWN", "Reason=test")
-        time.sleep(1)
-        self.cluster.run("scontrol", "update", f"NodeName={node}", "State=RESUME")
-        _, said = process.communicate(timeout=100)
-        self.assertEqual(process.returncode, 0, said)
-        self.assertEqual(self.results(), expected)
-        self.assert_nothing_left()
-
-    def test_a_job_that_the_kernel_kills(self):
-        self.jobs(MAKE, LONG)
-        expected = self.local_results()
-        process = self.start()
-        self.until(lambda: os.path.exists(self.path("j.logs/long.log")), "a long job")
-        time.sleep(0.5)
-        tasks = [int(p.name) for p in pathlib.Path("/proc").glob("[0-9]*")
-                 if b"--task" in self.words_of(p) and any(self.folder.encode() in word for word in self.words_of(p))]
-        self.assertEqual(len(tasks), 1)
-        os.kill(tasks[0], signal.SIGKILL)
-        _, said = process.communicate(timeout=100)
-        self.assertEqual(process.returncode, 1, said)
-        self.assertIn("long: failed: ended without a result; Slurm says FAILED", said)
-        self.assert_nothing_left()
-        self.assertEqual(self.batch()[1], {"ball": "up to date", "long": "done"})
-        self.assertEqual(self.results(), expected)
-
     def test_memory_that_does_not_suffice(self):
         mask = {"name": "mask", "command": "mask", "inputs": "ball", "output": "m.vdb",
                 "options": {"center": "0,0,0", "radius": 250, "voxel-size": 1}}
@@ -272,6 +237,69 @@ class Cluster(SlurmTest):
         self.assertIn("long: failed: cancelled in Slurm", said)
         self.assertIn("1 done, 1 failed, 1 blocked", said)
         self.assert_nothing_left()
+
+    def test_cancelled_while_nobody_follows(self):
+        self.jobs(MAKE)
+        process = self.start("--slurm-arguments=--hold")
+        self.until(lambda: self.cluster.queue(), "a job")
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=30)
+        self.cluster.run("scancel", "--user=root")
+        self.assertEqual(self.batch(), (0, {"ball": "done"}), self.said)
+        self.assertIn("handed over again", self.said)
+        self.assert_nothing_left()
+
+    def test_a_changed_job_file(self):
+        self.jobs(MAKE)
+        process = self.start("--slurm-arguments=--hold")
+        self.said_until(process, "ball: waits in Slurm's queue: JobHeldUser")
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=30)
+        self.jobs({**MAKE, "options": {"resolution": 24}})
+        self.assertEqual(self.batch()[0], 2, self.said)
+        self.assertIn("was changed after jobs of it were handed to Slurm; end those first: scancel", self.said)
+        self.cluster.run("scancel", self.said.split("scancel ")[1].split()[0])
+        self.assertEqual(self.batch()[1], {"ball": "done"}, self.said)
+        self.assert_nothing_left()
+
+
+class Kills(Cluster):
+    def test_jobs_killed_and_put_back_into_the_queue(self):
+        """One by an administrator, one as its node fails."""
+        self.jobs(MAKE, {**LONG, "name": "long-${s}", "output": ["long${s}.vdb", "long${s}.ply"], "options": {"size": "5x,5x,1x", "seed": "${s}"},
+                         "matrix": {"s": "1-2"}})
+        expected = self.local_results()
+        process = self.start()
+        self.until(lambda: all(os.path.exists(self.path(f"j.logs/long-{s}.log")) for s in (1, 2)), "long jobs")
+        time.sleep(0.5)
+        running = [id for id, state, job in self.cluster.queue() if state == "RUNNING" and job.startswith("long")]
+        self.assertEqual(len(running), 2, "a long job is too short")
+        node = self.cluster.run("squeue", "-h", "-o", "%N", "-j", running[1]).stdout.strip()
+        self.cluster.run("scontrol", "requeue", running[0])
+        self.cluster.run("scontrol", "update", f"NodeName={node}", "State=DOWN", "Reason=test")
+        time.sleep(1)
+        self.cluster.run("scontrol", "update", f"NodeName={node}", "State=RESUME")
+        _, said = process.communicate(timeout=100)
+        self.assertEqual(process.returncode, 0, said)
+        self.assertEqual(self.results(), expected)
+        self.assert_nothing_left()
+
+    def test_a_job_that_the_kernel_kills(self):
+        self.jobs(MAKE, LONG)
+        expected = self.local_results()
+        process = self.start()
+        self.until(lambda: os.path.exists(self.path("j.logs/long.log")), "a long job")
+        time.sleep(0.5)
+        tasks = [int(p.name) for p in pathlib.Path("/proc").glob("[0-9]*")
+                 if b"--task" in self.words_of(p) and any(self.folder.encode() in word for word in self.words_of(p))]
+        self.assertEqual(len(tasks), 1)
+        os.kill(tasks[0], signal.SIGKILL)
+        _, said = process.communicate(timeout=100)
+        self.assertEqual(process.returncode, 1, said)
+        self.assertIn("long: failed: ended without a result; Slurm says FAILED", said)
+        self.assert_nothing_left()
+        self.assertEqual(self.batch()[1], {"ball": "up to date", "long": "done"})
+        self.assertEqual(self.results(), expected)
 
     def test_interrupted_and_followed_from_elsewhere(self):
         self.jobs(MAKE, LONG, {**LONG, "name": "other", "output": "other.vdb", "options": {"size": "2x,2x,1x"}})
@@ -315,30 +343,6 @@ class Cluster(SlurmTest):
         self.assertEqual(self.cluster.queue(), [])
         self.assert_nothing_left()
         self.assertEqual([name for name in self.results()], ["ball.vdb"])
-
-    def test_cancelled_while_nobody_follows(self):
-        self.jobs(MAKE)
-        process = self.start("--slurm-arguments=--hold")
-        self.until(lambda: self.cluster.queue(), "a job")
-        process.send_signal(signal.SIGINT)
-        process.communicate(timeout=30)
-        self.cluster.run("scancel", "--user=root")
-        self.assertEqual(self.batch(), (0, {"ball": "done"}), self.said)
-        self.assertIn("handed over again", self.said)
-        self.assert_nothing_left()
-
-    def test_a_changed_job_file(self):
-        self.jobs(MAKE)
-        process = self.start("--slurm-arguments=--hold")
-        self.said_until(process, "ball: waits in Slurm's queue: JobHeldUser")
-        process.send_signal(signal.SIGINT)
-        process.communicate(timeout=30)
-        self.jobs({**MAKE, "options": {"resolution": 24}})
-        self.assertEqual(self.batch()[0], 2, self.said)
-        self.assertIn("was changed after jobs of it were handed to Slurm; end those first: scancel", self.said)
-        self.cluster.run("scancel", self.said.split("scancel ")[1].split()[0])
-        self.assertEqual(self.batch()[1], {"ball": "done"}, self.said)
-        self.assert_nothing_left()
 
     def test_a_controller_that_restarts(self):
         self.jobs(MAKE, LONG)

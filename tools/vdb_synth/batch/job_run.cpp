@@ -49,7 +49,8 @@ public:
             while (step()) ::usleep(10000);
         } catch (...) {
             stop(SIGTERM, true);
-            mExecutor->close();
+            save();
+            if (!mUnsaved) mExecutor->close();
             throw;
         }
         if (cancelled()) stop(stopSignal() ? stopSignal() : SIGTERM, false);

@@ -72,6 +72,7 @@ std::vector<JobNews> SlurmExecutor::poll() {
     }
     mSaid.erase("squeue");
     cancelWithdrawn(tasks);
+    mAccounts.clear();
     std::vector<JobNews> news;
     std::vector<std::size_t> gone;
     for (auto& [job, held] : mHeld) {
@@ -81,7 +82,7 @@ std::vector<JobNews> SlurmExecutor::poll() {
         if (task && !isEndState(task->state)) {
             held.ended.reset();
             held.found = false;
-            one = newsOf(job, held, task);
+            one = newsOf(job, *task);
             say(*task, job);
         } else if ((one = endOf(job, held, task))) {
             gone.push_back(job);
@@ -92,11 +93,11 @@ std::vector<JobNews> SlurmExecutor::poll() {
     return news;
 }
 
-JobNews SlurmExecutor::newsOf(std::size_t job, const Held&, const SlurmTask* task) {
+JobNews SlurmExecutor::newsOf(std::size_t job, const SlurmTask& task) const {
     JobNews news;
     news.job = job;
-    news.state = isRunState(task->state) ? JobState::Running : JobState::Waiting;
-    if (news.state == JobState::Running) news.seconds = task->seconds;
+    news.state = isRunState(task.state) ? JobState::Running : JobState::Waiting;
+    if (news.state == JobState::Running) news.seconds = task.seconds;
     return news;
 }
 

@@ -54,7 +54,7 @@ private:
     std::vector<std::string> heldIds() const;
     std::string heldText(const std::string& sign) const;
     std::optional<JobNews> endOf(std::size_t job, Held& held, const SlurmTask* task);
-    JobNews newsOf(std::size_t job, const Held& held, const SlurmTask* task);
+    JobNews newsOf(std::size_t job, const SlurmTask& task) const;
     const SlurmTask* accounted(const ArrayPlace& place);
     bool neverSatisfied(std::size_t job, const SlurmTask* task) const;
     std::string whyEnded(const Held& held, const SlurmTask* task) const;
@@ -69,7 +69,7 @@ private:
     std::map<int, std::size_t> mSizes;  // tasks by the array's number
     std::map<std::size_t, Held> mHeld;
     std::map<std::size_t, bool> mToSubmit;        // with all memory?
-    std::map<std::string, SlurmTasks> mAccounts;  // by the array's id
+    std::map<std::string, SlurmTasks> mAccounts;  // by the array's id, of one look
     std::set<std::size_t> mFailed;
     std::set<std::string> mSaid;
     int mNext = 1, mLargest = 0;

@@ -14,8 +14,9 @@ namespace {
 // Shared folders show what another machine wrote only after a while.
 constexpr std::chrono::seconds kGrace{10};
 
-// Those that a killed task left.
-void removeLocks(const Plan& plan, const Job& job) {
+// What a killed task left.
+void removeRemains(const Plan& plan, const Job& job, const std::string& logs) {
+    removeAllTemporaries(plan, job, logs);
     try {
         const OutputLocks locks(plan, job);
     } catch (const Error&) {
@@ -51,6 +52,7 @@ std::optional<JobNews> SlurmExecutor::endOf(std::size_t i, Held& held, const Slu
                     "jobs that left Slurm's queue without a result meanwhile are handed over again");
         if (held.withdrawn || (held.found && cancelled) || neverSatisfied(i, task)) {
             news.returned = true;
+            if (!task || task->started) removeRemains(mBatch.plan, job, mLogs);
             return news;
         }
         const bool ran = !task || task->started;
@@ -58,9 +60,9 @@ std::optional<JobNews> SlurmExecutor::endOf(std::size_t i, Held& held, const Slu
         if (ran && Clock::now() - *held.ended < kGrace) return {};
         news.state = JobState::Failed;
         news.error = whyEnded(held, task);
-        removeAllTemporaries(mBatch.plan, job, mLogs);
-        removeLocks(mBatch.plan, job);
+        removeRemains(mBatch.plan, job, mLogs);
     }
+    mFailed.erase(i);
     if (news.state == JobState::Failed) {
         mFailed.insert(i);
         news.moreMemory = saysMemory(job, news.error) && !held.again;
@@ -74,14 +76,15 @@ const SlurmTask* SlurmExecutor::accounted(const ArrayPlace& place) {
     auto known = mAccounts.find(id);
     if (known == mAccounts.end()) known = mAccounts.insert({id, accountedTasks({id})}).first;
     const auto found = known->second.find({id, place.index});
-    return found == known->second.end() ? nullptr : &found->second;
+    // Accounts may be behind.
+    return found == known->second.end() || !isEndState(found->second.state) ? nullptr : &found->second;
 }
 
 // Cancelled by Slurm as a job before it was not done, or is to be done anew.
 bool SlurmExecutor::neverSatisfied(std::size_t i, const SlurmTask* task) const {
-    if (!task || task->started || task->state != "CANCELLED") return false;
+    if (task && (task->started || task->state != "CANCELLED")) return false;
     const std::vector<std::size_t>& after = mBatch.plan.jobs[i].after;
-    return task->reason == "DependencyNeverSatisfied" ||
+    return (task && task->reason == "DependencyNeverSatisfied") ||
            std::any_of(after.begin(), after.end(), [&](std::size_t job) { return mFailed.count(job) > 0; });
 }
 

@@ -375,6 +375,27 @@ class Kills(BatchTest):
     def test_terminate(self):
         self.stopped(signal.SIGTERM, 143, os.kill)
 
+    def test_two_files_that_write_one_output(self):
+        first = {"name": "more", "command": "synth", "inputs": "ball.vdb", "output": "more1.vdb", "options": {"size": "4x,4x,1x", "seed": 1}}
+        self.ok("make", "balls", "ball.vdb", "--resolution", 32)
+        self.jobs(first)
+        self.jobs({**first, "options": {"size": "2x,2x,1x"}}, {**MAKE, "name": "beside", "output": "beside.vdb"}, name="k.json")
+        process = self.start()
+        self.started(process, "more")
+        result = self.run_tool("batch", "k.json")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn("more: failed: more1.vdb: another batch writes it now", result.stderr)
+        self.assertIn("1 done, 1 failed", result.stderr)
+        process.communicate(timeout=100)
+        self.assertEqual(process.returncode, 0)
+        whole = self.read("more1.vdb")
+        self.assertEqual(self.temporaries(), [])
+        # One after the other, each makes its own.
+        self.assertIn("1 done, 1 up to date", self.ok("batch", "k.json").stderr)
+        self.assertNotEqual(self.read("more1.vdb"), whole)
+        self.ok("batch", "j.json")
+        self.assertEqual(self.read("more1.vdb"), whole)
+
     def test_two_at_once(self):
         process = self.start()
         self.started(process, "ball")

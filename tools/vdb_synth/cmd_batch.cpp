@@ -6,6 +6,9 @@
 #include "tools/vdb_synth/batch/job_manifest.h"
 #include "tools/vdb_synth/batch/job_run.h"
 #include "tools/vdb_synth/batch/job_schema.h"
+#include "tools/vdb_synth/batch/slurm/slurm_commands.h"
+#include "tools/vdb_synth/batch/slurm/slurm_submission.h"
+#include "tools/vdb_synth/batch/slurm/slurm_task.h"
 #include "tools/vdb_synth/batch/status_page.h"
 
 #include <algorithm>
@@ -46,6 +49,10 @@ void makeLogs(const std::string& logs) {
         throw Error(ErrorCode::Io, logs + ": no folder can be made here; give another --logs FOLDER");
 }
 
+bool usesSlurm(const Arguments& arguments) {
+    return arguments.text("executor") == "slurm";
+}
+
 void refuseCombinations(const Arguments& arguments) {
     const auto refuse = [](const std::string& text) { throw Error(ErrorCode::InvalidOption, text); };
     if (arguments.has("keep-going") && arguments.has("fail-fast"))
@@ -54,6 +61,9 @@ void refuseCombinations(const Arguments& arguments) {
     if (arguments.has("pictures") && !arguments.has("page")) refuse("--pictures: needs --page FILE.html");
     if (arguments.has("output") && !arguments.has("dry-run") && !arguments.has("schema"))
         refuse("--output: needs --dry-run or --schema; jobs name their outputs themselves");
+    for (const char* name : {"slurm-partition", "slurm-time", "slurm-arguments", "on-interrupt"})
+        if (arguments.has(name) && !usesSlurm(arguments))
+            refuse(std::string("--") + name + ": needs --executor slurm");
 }
 
 nlohmann::json asReport(const Plan& plan, const std::vector<JobStatus>& status) {
@@ -99,9 +109,24 @@ void refuseTooMuchMemory(const Plan& plan, const RunContext& ctx) {
                             std::to_string(ctx.maxMemory / 1000000) + "M; give batch a larger --max-memory");
 }
 
+SlurmOptions slurmFrom(const Arguments& arguments) {
+    SlurmOptions options;
+    options.partition = arguments.text("slurm-partition");
+    options.time = arguments.text("slurm-time");
+    options.arguments = sbatchArguments(arguments.text("slurm-arguments"));
+    options.atOnce = arguments.has("jobs") ? arguments.whole("jobs") : 0;
+    options.threads = std::max(1, arguments.whole("threads"));
+    if (arguments.has("max-memory")) options.memory = arguments.wide("max-memory");
+    options.cancel = arguments.text("on-interrupt") == "cancel";
+    return options;
+}
+
 RunOptions optionsFrom(const Run& run, const std::string& logs) {
     RunOptions options;
-    options.jobs = run.arguments.whole("jobs");
+    if (usesSlurm(run.arguments))
+        options.slurm = slurmFrom(run.arguments);
+    else
+        options.jobs = run.arguments.whole("jobs");
     options.threads =
         run.context.threads > 0 ? run.context.threads : int(std::thread::hardware_concurrency());
     options.memory = run.context.maxMemory;
@@ -128,13 +153,17 @@ std::function<void(const std::vector<JobStatus>&)> pageWriter(const Run& run, co
 }
 
 void execute(Run& run, const Plan& plan) {
+    const bool slurm = usesSlurm(run.arguments);
+    if (slurm) requireSlurm();
     const std::string logs = logsOf(run.arguments, plan.path);
-    makeLogs(logs);
-    const BatchLock lock(logs, run.context);
     RunOptions options = optionsFrom(run, logs);
+    makeLogs(logs);
+    const BatchLock lock(logs, !slurm, run.context);
+    if (!slurm) refuseSubmitted(logs);
     options.keptOpen = lock.jobsFile();
     if (run.arguments.has("page")) options.onChange = pageWriter(run, plan);
-    const std::vector<JobStatus> status = runJobs(plan, options, run.context);
+    Manifest manifest(logs + "/manifest.json", run.context);
+    const std::vector<JobStatus> status = runJobs(plan, options, manifest, run.context);
     run.count("jobs", asReport(plan, status));
     run.count("done", countOf(status, JobState::Done));
     run.count("up_to_date", countOf(status, JobState::Current));
@@ -154,8 +183,9 @@ void runBatch(Run& run) {
     const std::string path = arguments.inputs[0];
     if (run.withoutTemporaries(path) != path)
         throw Error(ErrorCode::InvalidOption, "a batch is read from a file, as its logs lie beside it");
+    if (arguments.has("task")) return runTask(path, arguments.whole("task"), run.context);
     const Plan plan = makePlan(readJobFile(path, readJobText(path), setVariables(arguments)));
-    refuseTooMuchMemory(plan, run.context);
+    if (!usesSlurm(arguments)) refuseTooMuchMemory(plan, run.context);
     if (!arguments.has("dry-run")) return execute(run, plan);
     if (arguments.has("json") || arguments.has("output"))
         run.answer(planJson(plan).dump(2, ' ', false, Json::error_handler_t::replace));

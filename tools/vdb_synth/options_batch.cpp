@@ -11,7 +11,31 @@ std::vector<Option> batchOptionTable() {
             .in(Group::Method)
             .says("jobs that run at once; each gets an equal share of --threads and --max-memory")
             .initially("1")
-            .noting("a job waits while the others leave too little memory"),
+            .noting(
+                "a job waits while the others leave too little memory; with --executor slurm: tasks of an "
+                "array that run at once, by default any number"),
+        choice("executor", "WHERE",
+               {{"local", "on this machine"}, {"slurm", "as job arrays of a Slurm cluster"}})
+            .in(Group::Method)
+            .says("where jobs run")
+            .initially("local"),
+        option(Kind::Text, "slurm-partition", "NAME")
+            .in(Group::Method)
+            .says("partition of the cluster")
+            .otherwiseIs("the cluster's own"),
+        option(Kind::Text, "slurm-time", "TIME")
+            .in(Group::Method)
+            .says("most time that a job may take, as sbatch --time has it: 90 (minutes), 2:30:00, 1-00")
+            .otherwiseIs("the partition's own"),
+        option(Kind::Text, "slurm-arguments", "WORDS")
+            .in(Group::Method)
+            .says("more arguments of sbatch: --slurm-arguments=\"--account=show --qos=night\""),
+        choice("on-interrupt", "WHAT",
+               {{"leave", "jobs stay in Slurm's queue, and the same command follows them"},
+                {"cancel", "jobs are cancelled"}})
+            .in(Group::Method)
+            .says("what ctrl-C and SIGTERM do to the jobs of --executor slurm")
+            .initially("leave"),
         option(Kind::Text, "set", "NAME=VALUE")
             .in(Group::Method)
             .says("another value for a variable of the job file")
@@ -33,6 +57,9 @@ std::vector<Option> batchOptionTable() {
         output("page", "FILE.html", {"html", "htm"})
             .says("keep a page with the state, time, memory and error of each job up to date"),
         flag("pictures").in(Group::Output).says("render a small picture of each result for --page"),
+        whole("task", "N", 1, 4000000)
+            .in(Group::Running)
+            .says("run one job of a file that --executor slurm wrote, by its number; tasks of arrays do so"),
     };
     for (Option& option : table) option.takenBy(batch).ofTheRun();
     return table;

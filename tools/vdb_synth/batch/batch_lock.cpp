@@ -18,18 +18,11 @@ int opened(const std::string& path) {
     return file;
 }
 
-}  // namespace
-
-BatchLock::BatchLock(const std::string& folder, const RunContext& ctx) {
-    mBatch = opened(folder + "/batch.lock");
-    if (::flock(mBatch, LOCK_EX | LOCK_NB) != 0) {
-        ::close(mBatch);
-        throw Error(ErrorCode::Io,
-                    folder + ": another batch runs here; wait for it, or give another --logs FOLDER");
-    }
+// The file of the jobs' lock, once nobody holds it against `kind`.
+int lockedJobs(const std::string& folder, int kind, const RunContext& ctx) {
+    const int file = opened(folder + "/jobs.lock");
     try {
-        mJobs = opened(folder + "/jobs.lock");
-        for (int tries = 0; ::flock(mJobs, LOCK_EX | LOCK_NB) != 0; ++tries) {
+        for (int tries = 0; ::flock(file, kind | LOCK_NB) != 0; ++tries) {
             if (tries == 0)
                 message(ctx, MessageLevel::Note,
                         folder + ": waiting for the last jobs of a batch that was killed");
@@ -40,15 +33,40 @@ BatchLock::BatchLock(const std::string& folder, const RunContext& ctx) {
             ::usleep(100000);
         }
     } catch (const Error&) {
+        ::close(file);
+        throw;
+    }
+    return file;
+}
+
+}  // namespace
+
+BatchLock::BatchLock(const std::string& folder, bool jobsHere, const RunContext& ctx) {
+    mBatch = opened(folder + "/batch.lock");
+    if (::flock(mBatch, LOCK_EX | LOCK_NB) != 0) {
         ::close(mBatch);
-        if (mJobs >= 0) ::close(mJobs);
+        throw Error(ErrorCode::Io,
+                    folder + ": another batch runs here; wait for it, or give another --logs FOLDER");
+    }
+    if (!jobsHere) return;
+    try {
+        mJobs = lockedJobs(folder, LOCK_EX, ctx);
+    } catch (const Error&) {
+        ::close(mBatch);
         throw;
     }
 }
 
 BatchLock::~BatchLock() {
-    ::close(mJobs);
+    if (mJobs >= 0) ::close(mJobs);
     ::close(mBatch);
+}
+
+JobsLock::JobsLock(const std::string& folder, const RunContext& ctx)
+    : mFile(lockedJobs(folder, LOCK_SH, ctx)) {}
+
+JobsLock::~JobsLock() {
+    ::close(mFile);
 }
 
 }  // namespace vdbsynth::cli::batch

@@ -74,7 +74,7 @@ void replaceFile(const std::string& path, const std::string& content) {
 }
 
 Manifest::Manifest(const std::string& path, const RunContext& ctx) : mPath(path) {
-    if (::access(path.c_str(), F_OK) != 0) return;
+    if (path.empty() || ::access(path.c_str(), F_OK) != 0) return;
     try {
         const Json json = parseJobText(path, readWholeFile(path), false);
         const int format = json.at("format").get<int>();
@@ -116,6 +116,7 @@ void Manifest::put(const std::string& job, JobRecord record) {
 }
 
 void Manifest::save() {
+    if (mPath.empty()) return;
     Json jobs = Json::object();
     for (const auto& [name, record] : mRecords)
         jobs[name] = {{"fingerprint", record.fingerprint},

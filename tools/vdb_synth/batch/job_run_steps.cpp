@@ -75,6 +75,10 @@ Before beforeOf(const Job& job, const std::vector<JobStatus>& status) {
     return before;
 }
 
+bool saysMemory(const Job& job, const std::string& error) {
+    return error.find("--max-memory") != std::string::npos && !job.arguments.has("max-memory");
+}
+
 std::vector<std::string> processWords(const Job& job, const RunOptions& options, std::uint64_t memory) {
     std::vector<std::string> words = wordsOf(job);
     const std::string logs = std::filesystem::absolute(options.logs).string();
@@ -150,10 +154,14 @@ std::uint64_t peakInReports(const Job& job, const std::string& logs) {
     return peak;
 }
 
-void removeTemporaries(const Plan& plan, const Job& job, const std::string& logs) {
+std::vector<std::string> filesWrittenBy(const Plan& plan, const Job& job, const std::string& logs) {
     std::vector<std::string> paths = reportsOf(job, logs);
     for (const std::string& path : job.writes) paths.push_back(inFolder(plan, path));
-    for (const std::string& path : paths) try {
+    return paths;
+}
+
+void removeTemporaries(const Plan& plan, const Job& job, const std::string& logs) {
+    for (const std::string& path : filesWrittenBy(plan, job, logs)) try {
             OutputSet().reserve(path);  // removes those of dead processes, and its own
         } catch (const Error&) {
             // A folder that cannot be written holds none.

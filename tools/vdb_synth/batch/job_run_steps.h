@@ -14,6 +14,8 @@ struct Before {
 };
 Before beforeOf(const Job& job, const std::vector<JobStatus>& status);
 
+/// True if an error says that memory did not suffice, and the job does not set it itself.
+bool saysMemory(const Job& job, const std::string& error);
 /// The words of a job's process, with threads, memory and report.
 std::vector<std::string> processWords(const Job& job, const RunOptions& options, std::uint64_t memory);
 /// Of the process that draws a small picture of a result.
@@ -31,6 +33,8 @@ void beginLog(const Plan& plan, const Job& job, const std::string& logs,
               const std::vector<std::string>& words);
 /// The largest "peak_bytes" of a job's reports, 0 if there is none.
 std::uint64_t peakInReports(const Job& job, const std::string& logs);
+/// The files that a job's process writes: outputs and reports.
+std::vector<std::string> filesWrittenBy(const Plan& plan, const Job& job, const std::string& logs);
 /// Removes what a killed job left of its outputs.
 void removeTemporaries(const Plan& plan, const Job& job, const std::string& logs);
 

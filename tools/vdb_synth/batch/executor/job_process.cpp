@@ -1,4 +1,4 @@
-#include "tools/vdb_synth/batch/job_process.h"
+#include "tools/vdb_synth/batch/executor/job_process.h"
 
 #include <chrono>
 #include <csignal>

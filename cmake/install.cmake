@@ -18,3 +18,11 @@ configure_package_config_file(cmake/vdbsynthConfig.cmake.in ${PROJECT_BINARY_DIR
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/vdbsynthConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/vdbsynthConfig.cmake ${PROJECT_BINARY_DIR}/vdbsynthConfigVersion.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/vdbsynth)
+
+# The Python module, a package of its own: `cmake --install --component python`. Debian's python3 looks there below /usr.
+if(VDBSYNTH_PYTHON)
+  set(VDBSYNTH_PYTHON_DESTINATION lib/python3/dist-packages CACHE STRING "Folder below the prefix that the Python module is installed into")
+  install(TARGETS vdbsynth_python LIBRARY DESTINATION ${VDBSYNTH_PYTHON_DESTINATION}/vdbsynth COMPONENT python)
+  install(FILES python/vdbsynth/__init__.py python/vdbsynth/__init__.pyi python/vdbsynth/py.typed
+          DESTINATION ${VDBSYNTH_PYTHON_DESTINATION}/vdbsynth COMPONENT python)
+endif()

@@ -360,14 +360,17 @@ Regions regionsFrom(const std::string& name, py::handle value) {
         return {
             [grid = gridFrom(name, value)](const TextureShape& shape, std::size_t samples,
                                            const RunContext&) { return labelsIn(shape, *grid, samples); }};
-    const auto array = py::array_t<std::int32_t, py::array::c_style>::ensure(value);
+    const auto array = py::array_t<std::int64_t, py::array::c_style>::ensure(value);
     if (!array || array.ndim() != 1) {
         PyErr_Clear();
         refuse(name, "'auto', the name of an attribute, a LevelSet, a Grid or an array of whole numbers",
                value);
     }
-    return {[name, labels = Labels(array.data(), array.data() + array.size())](
-                const TextureShape& shape, std::size_t samples, const RunContext&) {
+    Labels numbers;
+    for (py::ssize_t i = 0; i < array.size(); ++i)
+        numbers.push_back(std::int32_t(std::clamp<std::int64_t>(array.data()[i], INT32_MIN, INT32_MAX)));
+    return {[name, labels = std::move(numbers)](const TextureShape& shape, std::size_t samples,
+                                                const RunContext&) {
         if (labels.size() != shape.site.size())
             throw Error(ErrorCode::ShapeMismatch, "`" + name + "`: holds " + std::to_string(labels.size()) +
                                                       " numbers, but the target has " +

@@ -28,6 +28,14 @@ install(DIRECTORY ${VDBSYNTH_MANUAL}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/ma
 install(FILES ${VDBSYNTH_MANUAL}/completion/vdb_synth DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT tool)
 install(FILES ${VDBSYNTH_MANUAL}/completion/_vdb_synth DESTINATION ${zsh_functions} COMPONENT tool)
 install(FILES ${VDBSYNTH_MANUAL}/completion/vdb_synth.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT tool)
+
+# The Python module, a package of its own: `cmake --install --component python`. Debian's python3 looks there below /usr.
+if(VDBSYNTH_PYTHON)
+  set(VDBSYNTH_PYTHON_DESTINATION lib/python3/dist-packages CACHE STRING "Folder below the prefix that the Python module is installed into")
+  install(TARGETS vdbsynth_python LIBRARY DESTINATION ${VDBSYNTH_PYTHON_DESTINATION}/vdbsynth COMPONENT python)
+  install(FILES python/vdbsynth/__init__.py python/vdbsynth/__init__.pyi python/vdbsynth/py.typed
+          DESTINATION ${VDBSYNTH_PYTHON_DESTINATION}/vdbsynth COMPONENT python)
+endif()
 if(PROJECT_IS_TOP_LEVEL)
   include(cmake/packages.cmake)
 endif()

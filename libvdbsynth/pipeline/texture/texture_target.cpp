@@ -150,8 +150,15 @@ void scale(Points& points, Vec3d& origin, double by) {
     for (Vec3f& p : points) p = cast<float>(cast<double>(p) * by);
 }
 
-void takePoints(TextureShape& shape, const std::string& path, const ModelOptions& options,
-                const RunContext& ctx) {
+void takePoints(TextureShape& shape, PointCloud cloud, const RunContext& ctx) {
+    shape.origin = cloud.origin;
+    shape.points = std::move(cloud.points);
+    shape.attributes = std::move(cloud.attributes);
+    makeSites(shape, cloud.normals, ctx);
+}
+
+void takePointFile(TextureShape& shape, const std::string& path, const ModelOptions& options,
+                   const RunContext& ctx) {
     PointFile file = readPoints(path, ctx);
     if (file.invalid > 0)
         message(ctx, MessageLevel::Note,
@@ -159,15 +166,11 @@ void takePoints(TextureShape& shape, const std::string& path, const ModelOptions
     if (isMeshPath(path) && !holdsPoints(path))
         message(ctx, MessageLevel::Note, path + ": its faces are left out; `as` mesh textures them");
     scale(file.cloud.points, file.cloud.origin, options.unitScale);
-    shape.origin = file.cloud.origin;
-    shape.points = std::move(file.cloud.points);
-    shape.attributes = std::move(file.cloud.attributes);
-    makeSites(shape, file.cloud.normals, ctx);
+    takePoints(shape, std::move(file.cloud), ctx);
 }
 
-void takeLevelSet(TextureShape& shape, const std::string& path, const ModelOptions& options,
-                  const RunContext& ctx) {
-    shape.model = loadModel(path, options, ctx);
+void takeLevelSet(TextureShape& shape, LevelSet model, const RunContext& ctx) {
+    shape.model = std::move(model);
     takeMesh(shape, levelSetToMesh(*shape.model.grid, {}, ctx), ctx);
 }
 
@@ -202,7 +205,7 @@ TextureShape loadTarget(const std::string& path, std::optional<TargetKind> kind,
     shape.kind = kind.value_or(own);
     withThreads(ctx, [&] {
         if (shape.kind == TargetKind::LevelSet || own == TargetKind::LevelSet) {
-            takeLevelSet(shape, path, options, ctx);
+            takeLevelSet(shape, loadModel(path, options, ctx), ctx);
         } else if (shape.kind == TargetKind::Mesh || own == TargetKind::Mesh) {
             if (!readsAsMesh(path))
                 throw Error(ErrorCode::Unusable,
@@ -211,11 +214,34 @@ TextureShape loadTarget(const std::string& path, std::optional<TargetKind> kind,
             scale(mesh.points, mesh.origin, options.unitScale);
             takeMesh(shape, std::move(mesh), ctx);
         } else {
-            takePoints(shape, path, options, ctx);
+            takePointFile(shape, path, options, ctx);
         }
     });
     if (shape.kind == TargetKind::Points) shape.triangles.clear();
     if (shape.kind != TargetKind::LevelSet) shape.model = {};
+    return shape;
+}
+
+TextureShape targetOf(const PointCloud& cloud, const std::string& name, const RunContext& ctx) {
+    TextureShape shape;
+    shape.name = name;
+    withThreads(ctx, [&] { takePoints(shape, cloud, ctx); });
+    return shape;
+}
+
+TextureShape targetOf(const Mesh& mesh, const std::string& name, const RunContext& ctx) {
+    TextureShape shape;
+    shape.kind = TargetKind::Mesh;
+    shape.name = name;
+    withThreads(ctx, [&] { takeMesh(shape, mesh, ctx); });
+    return shape;
+}
+
+TextureShape targetOf(const LevelSet& model, const std::string& name, const RunContext& ctx) {
+    TextureShape shape;
+    shape.kind = TargetKind::LevelSet;
+    shape.name = name;
+    withThreads(ctx, [&] { takeLevelSet(shape, model, ctx); });
     return shape;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/geometry/mesh.h"
+#include "libvdbsynth/geometry/point_cloud.h"
 #include "libvdbsynth/pipeline/convert/model.h"
 
 #include <cstdint>
@@ -41,6 +42,15 @@ struct TextureShape {
 /// @par Repeats same bits for any number of threads
 TextureShape loadTarget(const std::string& path, std::optional<TargetKind> kind, const ModelOptions& options,
                         const RunContext& ctx = {});
+
+/// The same of what is in memory already: points, the vertices of a mesh, or those of a level set's zero
+/// level, which TextureShape::model keeps.
+/// @param name  for messages
+/// @throw Error as levelSetToMesh (vdb/convert/level_set_to_mesh.h)
+/// @par Repeats same bits for any number of threads; a file's content gives what loadTarget gives
+TextureShape targetOf(const PointCloud& cloud, const std::string& name, const RunContext& ctx = {});
+TextureShape targetOf(const Mesh& mesh, const std::string& name, const RunContext& ctx = {});
+TextureShape targetOf(const LevelSet& model, const std::string& name, const RunContext& ctx = {});
 
 /// The kind that loadTarget takes a file as if none is given. @throw Error as holdsPoints
 TargetKind kindOf(const std::string& path);

@@ -1,0 +1,290 @@
+#include "libvdbsynth/render/traced_surface.h"
+
+#include "libvdbsynth/base/error.h"
+#include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/distance/distance_transform.h"
+#include "libvdbsynth/grid/brick_field.h"
+#include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/level_set.h"
+
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vdbsynth {
+namespace {
+
+constexpr int kCells = 8, kAround = 9, kStored = kAround * kAround * kAround;
+constexpr std::int32_t kOutside = -1, kInside = -2;
+constexpr double kFarSamples = 2.5e6;
+
+int coarsenessFor(const Index3& size) {
+    const double volume = double(size.x) * size.y * size.z;
+    int coarseness = 2;
+    while (volume / (double(coarseness) * coarseness * coarseness) > kFarSamples) ++coarseness;
+    return coarseness;
+}
+
+}  // namespace
+
+TracedSurface::TracedSurface(const openvdb::FloatGrid& grid, const RunContext& ctx) {
+    mSolid = solidBox(grid, "the model");
+    mLimit = float(std::min(halfWidthOf(grid), 8.0));
+    mScale = mLimit / 32767;
+    mVoxels = mSolid.expanded(int(std::ceil(mLimit)) + 1);
+    mVoxelSize = voxelSizeOf(grid);
+    const Vec3d corner = fromVec(
+        grid.indexToWorld(toVec(Vec3d{double(mVoxels.min.x), double(mVoxels.min.y), double(mVoxels.min.z)})));
+    mToWorld = kIdentity;
+    for (int axis = 0; axis < 3; ++axis) {
+        Vec3d next{double(mVoxels.min.x), double(mVoxels.min.y), double(mVoxels.min.z)};
+        next[axis] += 1;
+        mAxes[axis] = fromVec(grid.indexToWorld(toVec(next))) - corner;
+        for (int r = 0; r < 3; ++r) {
+            mToWorld[std::size_t(axis * 4 + r)] = mAxes[axis][r];
+            mToWorld[std::size_t(12 + r)] = corner[r];
+        }
+    }
+    const Index3 size = mVoxels.size();
+    mBricks = {(size.x + kCells - 1) / kCells, (size.y + kCells - 1) / kCells,
+               (size.z + kCells - 1) / kCells};
+    const Index3 solid = mSolid.size();
+    mReach = 0.5f * float(length(Vec3d{double(solid.x), double(solid.y), double(solid.z)}));
+    const Index3 twice = mSolid.min + mSolid.max - mVoxels.min * 2;
+    mMiddle = Vec3f{float(twice.x), float(twice.y), float(twice.z)} * 0.5f;
+    const BrickField field = gatherBricks(grid, mVoxels, float(1 / mVoxelSize), mLimit, ctx);
+    layOut(field, ctx);
+    measureEmptiness();
+    mCoarseness = coarsenessFor(size);
+    Distances far = distancesToSurface(field, mLimit, mCoarseness, ctx);
+    mFarSize = far.size;
+    mFar = std::move(far.values);
+    for (float& value : mFar) value = std::max(0.f, value * float(mCoarseness));
+}
+
+void TracedSurface::layOut(const BrickField& field, const RunContext& ctx) {
+    mSlots.assign(latticeCount(mBricks), kOutside);
+    parallelFor(ctx, mSlots.size(), 512, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+            float value = 0;
+            // With the samples of the next bricks that cells of this one reach.
+            const Index3 low = latticeVoxel(b, mBricks) * kCells;
+            if (field.constantIn({low, low + Index3{kCells, kCells, kCells}}, value))
+                mSlots[b] = value < 0 ? kInside : kOutside;
+            else
+                mSlots[b] = 0;
+        }
+    });
+    std::int32_t stored = 0;
+    for (std::int32_t& slot : mSlots)
+        if (slot == 0) slot = stored++;
+    requireMemory(ctx, double(stored) * kStored * sizeof(std::int16_t), "drawing this model",
+                  "use larger voxels");
+    mSamples.resize(std::size_t(stored) * kStored);
+    parallelFor(ctx, mSlots.size(), 64, [&](std::size_t begin, std::size_t end) {
+        float values[kStored];
+        for (std::size_t b = begin; b < end; ++b) {
+            if (mSlots[b] < 0) continue;
+            field.readBox(latticeVoxel(b, mBricks) * kCells, {kAround, kAround, kAround}, values);
+            std::int16_t* out = mSamples.data() + std::size_t(mSlots[b]) * kStored;
+            for (int i = 0; i < kStored; ++i)
+                out[i] = std::int16_t(std::lround(std::clamp(values[i] / mScale, -32767.f, 32767.f)));
+        }
+    });
+}
+
+// How many bricks every brick is from one with samples, along the axis where they are farthest apart: two
+// passes over the neighbours before and behind are exact for this distance.
+void TracedSurface::measureEmptiness() {
+    mEmpty.assign(mSlots.size(), 255);
+    const IndexBox box = IndexBox::fromSize(mBricks);
+    const auto relax = [&](std::size_t i, bool before) {
+        if (mSlots[i] >= 0) mEmpty[i] = 0;
+        const Index3 p = latticeVoxel(i, mBricks);
+        for (std::size_t n = 0; n < 13; ++n) {
+            const Index3 q = p + kAllNeighbours[before ? n : 25 - n];
+            if (!box.contains(q)) continue;
+            const std::uint8_t there = mEmpty[latticeIndex(q, mBricks)];
+            if (there < 254 && there + 1 < mEmpty[i]) mEmpty[i] = std::uint8_t(there + 1);
+        }
+    };
+    for (std::size_t i = 0; i < mEmpty.size(); ++i) relax(i, true);
+    for (std::size_t i = mEmpty.size(); i-- > 0;) relax(i, false);
+}
+
+Vec3d TracedSurface::placeHere(const Vec3d& world) const {
+    return directionHere(world - Vec3d{mToWorld[12], mToWorld[13], mToWorld[14]});
+}
+
+Vec3d TracedSurface::directionHere(const Vec3d& world) const {
+    // The axes are at right angles and of one length.
+    const double squared = 1 / (mVoxelSize * mVoxelSize);
+    return Vec3d{dot(world, mAxes[0]), dot(world, mAxes[1]), dot(world, mAxes[2])} * squared;
+}
+
+std::vector<Vec3d> TracedSurface::outline() const {
+    std::vector<Vec3d> places;
+    for (std::size_t b = 0; b < mSlots.size(); ++b) {
+        if (mSlots[b] < 0) continue;
+        const std::int16_t* samples = mSamples.data() + std::size_t(mSlots[b]) * kStored;
+        IndexBox solid{{kAround, kAround, kAround}, {-1, -1, -1}};
+        forEachVoxel(IndexBox::fromSize({kCells, kCells, kCells}), [&](const Index3& p) {
+            if (samples[(p.x * kAround + p.y) * kAround + p.z] >= 0) return;
+            for (int axis = 0; axis < 3; ++axis) {
+                solid.min[axis] = std::min(solid.min[axis], p[axis]);
+                solid.max[axis] = std::max(solid.max[axis], p[axis]);
+            }
+        });
+        if (solid.empty()) continue;
+        const Index3 low = latticeVoxel(b, mBricks) * kCells;
+        for (int c = 0; c < 8; ++c) {
+            Vec3d p;
+            for (int axis = 0; axis < 3; ++axis)
+                p[axis] = low[axis] + (c >> axis & 1 ? solid.max[axis] + 0.5 : solid.min[axis] - 0.5);
+            places.push_back(transformed(mToWorld, p));
+        }
+    }
+    if (places.empty()) places.push_back(transformed(mToWorld, cast<double>(mMiddle)));
+    return places;
+}
+
+double TracedSurface::lowest(const Vec3d& axis) const {
+    double least = 1e300;
+    for (std::size_t b = 0; b < mSlots.size(); ++b) {
+        if (mSlots[b] < 0) continue;
+        const std::int16_t* samples = mSamples.data() + std::size_t(mSlots[b]) * kStored;
+        const Index3 low = latticeVoxel(b, mBricks) * kCells;
+        forEachVoxel(IndexBox::fromSize({kCells, kCells, kCells}), [&](const Index3& p) {
+            const std::int16_t value = samples[(p.x * kAround + p.y) * kAround + p.z];
+            if (value >= 0) return;
+            const Index3 q = low + p;
+            least = std::min(least, dot(axis, Vec3d{double(q.x), double(q.y), double(q.z)}) +
+                                        double(value) * double(mScale));
+        });
+    }
+    return least < 1e300 ? least : dot(axis, cast<double>(mMiddle));
+}
+
+float TracedSurface::bandDistance(const Vec3f& p) const {
+    const int x = int(std::floor(p.x)), y = int(std::floor(p.y)), z = int(std::floor(p.z));
+    const int bx = x >> 3, by = y >> 3, bz = z >> 3;
+    if (bx < 0 || by < 0 || bz < 0 || bx >= mBricks.x || by >= mBricks.y || bz >= mBricks.z) return mLimit;
+    const std::int32_t slot = mSlots[latticeIndex({bx, by, bz}, mBricks)];
+    if (slot < 0) return slot == kInside ? -mLimit : mLimit;
+    const std::int16_t* s =
+        mSamples.data() + std::size_t(slot) * kStored + ((x & 7) * kAround + (y & 7)) * kAround + (z & 7);
+    const float fx = p.x - float(x), fy = p.y - float(y), fz = p.z - float(z);
+    const auto along = [fz](const std::int16_t* q) { return float(q[0]) + (float(q[1]) - float(q[0])) * fz; };
+    constexpr int kY = kAround, kX = kAround * kAround;
+    const float low = along(s) + (along(s + kY) - along(s)) * fy;
+    const float high = along(s + kX) + (along(s + kX + kY) - along(s + kX)) * fy;
+    return (low + (high - low) * fx) * mScale;
+}
+
+float TracedSurface::coarseAt(const Vec3f& p) const {
+    Vec3f q = (p - Vec3f{1, 1, 1} * (0.5f * float(mCoarseness - 1))) * (1 / float(mCoarseness));
+    Index3 base;
+    for (int axis = 0; axis < 3; ++axis) {
+        q[axis] = std::clamp(q[axis], 0.f, float(mFarSize[axis] - 1));
+        base[axis] = std::min(int(q[axis]), std::max(0, mFarSize[axis] - 2));
+    }
+    const Index3 next{mFarSize.x > 1, mFarSize.y > 1, mFarSize.z > 1};
+    const float fx = q.x - float(base.x), fy = q.y - float(base.y), fz = q.z - float(base.z);
+    const std::size_t kY = std::size_t(mFarSize.z) * std::size_t(next.y);
+    const std::size_t kX = std::size_t(mFarSize.y) * std::size_t(mFarSize.z) * std::size_t(next.x);
+    const float* s = mFar.data() + latticeIndex(base, mFarSize);
+    const auto along = [&](const float* r) { return r[0] + (r[next.z] - r[0]) * fz; };
+    const float low = along(s) + (along(s + kY) - along(s)) * fy;
+    const float high = along(s + kX) + (along(s + kX + kY) - along(s + kX)) * fy;
+    return low + (high - low) * fx;
+}
+
+float TracedSurface::farDistance(const Vec3f& p) const {
+    const Index3 size = mVoxels.size();
+    Vec3f inside;
+    for (int axis = 0; axis < 3; ++axis) inside[axis] = std::clamp(p[axis], 0.f, float(size[axis] - 1));
+    const Vec3f apart = p - inside;
+    const float beyond = dot(apart, apart);
+    if (beyond > 0) {
+        // No nearer than the solid's box, nor than the triangle inequality allows.
+        Vec3f off;
+        for (int axis = 0; axis < 3; ++axis) {
+            const float low = float(mSolid.min[axis] - mVoxels.min[axis]),
+                        high = float(mSolid.max[axis] - mVoxels.min[axis]);
+            off[axis] = std::max({low - p[axis], 0.f, p[axis] - high});
+        }
+        return std::max(length(off), coarseAt(inside) - std::sqrt(beyond));
+    }
+    const float band = bandDistance(p);
+    if (band < 0.8f * mLimit) return std::max(0.f, band);
+    return std::max(band, coarseAt(p));
+}
+
+Vec3f TracedSurface::normalAt(const Vec3f& p) const {
+    constexpr float kStep = 0.75f;
+    Vec3f gradient;
+    for (int axis = 0; axis < 3; ++axis) {
+        Vec3f low = p, high = p;
+        low[axis] -= kStep;
+        high[axis] += kStep;
+        gradient[axis] = bandDistance(high) - bandDistance(low);
+    }
+    return normalized(gradient);
+}
+
+bool TracedSurface::meets(const Vec3f& origin, const Vec3f& direction, float& along) const {
+    // The part of the ray within the samples.
+    float begin = 0, end = 1e30f;
+    Vec3f inverse;
+    for (int axis = 0; axis < 3; ++axis) {
+        inverse[axis] = 1 / (std::abs(direction[axis]) > 1e-12f ? direction[axis] : 1e-12f);
+        const float low = (0.f - origin[axis]) * inverse[axis];
+        const float high = (float(mVoxels.size()[axis] - 1) - origin[axis]) * inverse[axis];
+        begin = std::max(begin, std::min(low, high));
+        end = std::min(end, std::max(low, high));
+    }
+    float before = begin, outside = mLimit;
+    for (float t = begin + 1e-3f; t < end;) {
+        const Vec3f p = origin + direction * t;
+        const Index3 brick{int(p.x) >> 3, int(p.y) >> 3, int(p.z) >> 3};
+        const std::size_t b =
+            latticeIndex({std::clamp(brick.x, 0, mBricks.x - 1), std::clamp(brick.y, 0, mBricks.y - 1),
+                          std::clamp(brick.z, 0, mBricks.z - 1)},
+                         mBricks);
+        if (mSlots[b] == kOutside) {
+            // To where the ray leaves the empty bricks around this one.
+            const int k = mEmpty[b];
+            float leave = 1e30f;
+            for (int axis = 0; axis < 3; ++axis) {
+                const float side = inverse[axis] > 0 ? float((brick[axis] + k) * kCells)
+                                                     : float((brick[axis] - k + 1) * kCells);
+                leave = std::min(leave, (side - origin[axis]) * inverse[axis]);
+            }
+            before = t;
+            outside = mLimit;
+            t = std::max(leave, t) + 1e-2f;
+            continue;
+        }
+        const float value = bandDistance(p);
+        if (value < 0) {
+            float low = before, high = t, atLow = outside, atHigh = value;
+            for (int i = 0; i < 6; ++i) {
+                const float next = low + (high - low) * std::clamp(atLow / (atLow - atHigh), 0.05f, 0.95f);
+                const float there = bandDistance(origin + direction * next);
+                (there < 0 ? high : low) = next;
+                (there < 0 ? atHigh : atLow) = there;
+                if (std::abs(there) < 2e-3f) break;
+            }
+            along = low + (high - low) * std::clamp(atLow / (atLow - atHigh), 0.f, 1.f);
+            return true;
+        }
+        before = t;
+        outside = value;
+        t += std::max(0.25f, 0.85f * value);
+    }
+    return false;
+}
+
+}  // namespace vdbsynth

@@ -1,5 +1,6 @@
 #include "libvdbsynth/render/shading.h"
 
+#include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/math/trigonometry.h"
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 namespace vdbsynth {
 namespace {
 
-constexpr Vec3f kKeyColour{1.18f, 1.10f, 1.00f}, kBehindColour{0.30f, 0.34f, 0.40f};
+constexpr Vec3f kKeyColour{1.30f, 1.21f, 1.08f}, kBehindColour{0.30f, 0.34f, 0.40f};
 constexpr Vec3f kZenith{0.74f, 0.80f, 0.90f}, kHorizon{0.56f, 0.57f, 0.60f}, kFloor{0.34f, 0.31f, 0.28f};
 constexpr float kSharpness = 7;  // of the shadow: one over the tangent of the light's half-angle
 constexpr float kCone = 0.62f;   // tangent of half the angle of a direction's cone
@@ -89,16 +90,13 @@ Lighting::Lighting(const TracedSurface& surface, const Camera& camera, const Vec
                     : normalized(right * 0.85f + up * 0.35f - normalized(level) * 0.75f);
     // An upright cube, turned as the camera is.
     const Vec3f x = steep ? right : normalized(cross(up, normalized(level))), y = cross(up, x);
-    std::size_t n = 0;
-    for (int i = -1; i <= 1; ++i)
-        for (int j = -1; j <= 1; ++j)
-            for (int k = -1; k <= 1; ++k) {
-                const int many = std::abs(i) + std::abs(j) + std::abs(k);
-                if (many != 1 && many != 3) continue;
-                mDirections[n] = normalized(x * float(i) + y * float(j) + up * float(k));
-                mColours[n] = skyColour(dot(mDirections[n], up));
-                ++n;
-            }
+    std::size_t n = 0, edge = kFirstEdge;
+    for (const Index3& step : kAllNeighbours) {
+        const int many = std::abs(step.x) + std::abs(step.y) + std::abs(step.z);
+        const std::size_t place = many == 2 ? edge++ : n++;
+        mDirections[place] = normalized(x * float(step.x) + y * float(step.y) + up * float(step.z));
+        mColours[place] = skyColour(dot(mDirections[place], up));
+    }
     const float reach = surface.reach();
     mWays = {std::max(1.5f, 0.02f * reach), std::max(4.f, 0.07f * reach), std::max(9.f, 0.2f * reach),
              std::max(18.f, 0.5f * reach)};
@@ -111,36 +109,41 @@ Vec3f Lighting::skyColour(float height) const {
 
 float Lighting::sunAt(const Vec3f& place) const {
     const float end = 2.2f * mSurface->reach() + length(place - mSurface->middle());
-    float passes = 1;
-    float way = 0.6f;
+    float passes = 1, way = 0.6f, before = 1e20f;
     for (int step = 0; step < 96 && way < end; ++step) {
         const Vec3f p = place + mSun * way;
         const float distance = mSurface->farDistance(p);
-        passes = std::min(passes, kSharpness * distance / way);
+        // The nearest point between two steps, from where their balls meet.
+        const float back = std::min(distance * distance / (2 * before), 0.85f * distance);
+        const float aside = std::sqrt(std::max(0.f, distance * distance - back * back));
+        passes = std::min(passes, kSharpness * aside / std::max(0.3f, way - back));
         if (passes < 0.004f) return 0;
-        // Nothing that lies beyond can hide a larger share than this.
         if (distance > 2.5f * mSurface->reach()) break;
-        way += std::max(0.5f + 0.01f * way, distance * 0.8f);
+        // Beyond the voxels distances are bounds, which two steps do not fit together.
+        before = mSurface->isBeyond(p) ? 1e20f : std::max(distance, 1e-3f);
+        way += std::max(0.4f + 0.008f * way, distance * 0.75f);
     }
     return smooth(std::clamp(passes, 0.f, 1.f));
 }
 
-Lighting::Sky Lighting::skyAt(const Vec3f& place, const Vec3f& normal) const {
+Lighting::Sky Lighting::skyAt(const Vec3f& place, const Vec3f& normal, std::size_t directions) const {
     Sky sky;
     float weights = 0;
-    const float leave = 0.7f;
-    for (std::size_t i = 0; i < mDirections.size(); ++i) {
+    const Vec3f from = place + normal * 0.7f;
+    // Nothing hides a cone nearer than this.
+    const float free = mSurface->farDistance(from) / (1 + kCone);
+    for (std::size_t i = 0; i < directions; ++i) {
         const float weight = dot(mDirections[i], normal) - 0.05f;
         if (weight <= 0) continue;
         float seen = 1;
         for (const float way : mWays) {
-            const float distance = mSurface->farDistance(place + normal * leave + mDirections[i] * way);
-            // Far parts hide little of it.
-            const float hidden = 1 - distance / (way * kCone);
-            seen = std::min(seen, 1 - hidden * (way == mWays[3] ? 0.6f : 1.f));
+            if (way <= free) continue;
+            const float distance = mSurface->farDistance(from + mDirections[i] * way);
+            // Far parts hide less of it.
+            seen = std::min(seen, 1 - (1 - distance / (way * kCone)) * (way == mWays[3] ? 0.75f : 1.f));
             if (seen <= 0) break;
         }
-        seen = std::max(seen, 0.f);
+        seen = smooth(std::clamp(seen, 0.f, 1.f));
         weights += weight;
         sky.open += weight * seen;
         // What is hidden sends back a little of the light, in the model's warm colour.
@@ -155,11 +158,11 @@ Lighting::Sky Lighting::skyAt(const Vec3f& place, const Vec3f& normal) const {
 
 Vec3f Lighting::shaded(const Vec3f& place, const Vec3f& normal, const Vec3f& towards,
                        const Vec3f& albedo) const {
-    const Sky sky = skyAt(place, normal);
+    const Sky sky = skyAt(place, normal, kFirstEdge);
     const float facing = dot(normal, mSun);
     const float key = facing > 0 ? facing * sunAt(place + normal * 0.9f) : 0;
     const float behind = std::max(0.f, dot(normal, mBehind)) * sky.open;
-    const Vec3f diffuse = kKeyColour * key + sky.light * 0.62f + kBehindColour * behind;
+    const Vec3f diffuse = kKeyColour * key + sky.light * (0.3f + 0.36f * sky.open) + kBehindColour * behind;
     // A rough gloss: the distribution of Trowbridge and Reitz, Schlick's Fresnel.
     const Vec3f half = normalized(mSun + towards);
     const float nh = std::max(0.f, dot(normal, half)), nv = std::max(0.05f, dot(normal, towards));
@@ -177,9 +180,9 @@ Vec3f Lighting::shaded(const Vec3f& place, const Vec3f& normal, const Vec3f& tow
 }
 
 Vec3f Lighting::onGround(const Vec3f& place) const {
-    const Sky sky = skyAt(place, mUp);
+    const Sky sky = skyAt(place, mUp, mDirections.size());
     const float facing = std::max(0.f, dot(mSun, mUp));
-    const float key = facing * sunAt(place + mUp * 0.9f), open = sky.open * sky.open;
+    const float key = facing * sunAt(place + mUp * 0.9f), open = 0.15f + 0.85f * sky.open;
     const Vec3f light = kKeyColour * (0.85f * key) + kZenith * (0.75f * open);
     const Vec3f full = kKeyColour * (0.85f * facing) + kZenith * 0.75f;
     return {light.x / full.x, light.y / full.y, light.z / full.z};

@@ -30,8 +30,8 @@ struct Background {
 ///
 /// The shadow follows a ray through distances to the surface: the least of distance / way, times a constant,
 /// is the share of the light that passes [aaltonen2018]. The sky is asked for in 14 directions, those to the
-/// faces and corners of a cube that stands upright; what a direction sees is the least of distance / way at
-/// four places along it, a cone traced through distances [wright2015].
+/// faces and corners of a cube that stands upright (on the ground also to its edges); what a direction sees
+/// is the least of distance / way at four places along it, a cone traced through distances [wright2015].
 class Lighting {
 public:
     /// @param camera  its directions in the places of `surface`
@@ -44,28 +44,31 @@ public:
     /// Share of light that a place of the ground gets, 0..1, next to one far from the model.
     Vec3f onGround(const Vec3f& place) const;
     /// Share of the sky that a place of the surface sees, 0..1.
-    float openAt(const Vec3f& place, const Vec3f& normal) const { return skyAt(place, normal).open; }
+    float openAt(const Vec3f& place, const Vec3f& normal) const {
+        return skyAt(place, normal, kFirstEdge).open;
+    }
     /// Share of the key light that reaches a place, 0..1.
     float sunAt(const Vec3f& place) const;
     /// Towards the key light, a unit vector.
     const Vec3f& sun() const { return mSun; }
 
 private:
+    static constexpr std::size_t kFirstEdge = 14;  // of the directions; faces and corners come before
     struct Sky {
         Vec3f light;     // from all of it, as weighted by the normal
         float open = 0;  // the share that is seen
     };
-    Sky skyAt(const Vec3f& place, const Vec3f& normal) const;
+    Sky skyAt(const Vec3f& place, const Vec3f& normal, std::size_t directions) const;
     Vec3f skyColour(float height) const;
 
     const TracedSurface* mSurface;
     Vec3f mUp, mSun, mBehind;
-    std::array<Vec3f, 14> mDirections;
-    std::array<Vec3f, 14> mColours;
+    std::array<Vec3f, 26> mDirections;
+    std::array<Vec3f, 26> mColours;
     std::array<float, 4> mWays;
 };
 
 /// The colour of a model without colours of its own.
-inline constexpr Vec3f kClay{0.52f, 0.40f, 0.31f};
+inline constexpr Vec3f kClay{0.47f, 0.335f, 0.245f};
 
 }  // namespace vdbsynth

@@ -16,9 +16,8 @@
 namespace vdbsynth {
 namespace {
 
-constexpr int kCells = 8, kAround = 9, kStored = kAround * kAround * kAround;
-constexpr std::int32_t kOutside = -1, kInside = -2;
-constexpr double kFarSamples = 2.5e6;
+constexpr int kCells = 8;
+constexpr double kFarSamples = 1e6;
 
 int coarsenessFor(const Index3& size) {
     const double volume = double(size.x) * size.y * size.z;
@@ -50,6 +49,11 @@ TracedSurface::TracedSurface(const openvdb::FloatGrid& grid, const RunContext& c
     const Index3 size = mVoxels.size();
     mBricks = {(size.x + kCells - 1) / kCells, (size.y + kCells - 1) / kCells,
                (size.z + kCells - 1) / kCells};
+    for (int axis = 0; axis < 3; ++axis) {
+        mLast[axis] = float(size[axis] - 1);
+        mSolidLow[axis] = float(mSolid.min[axis] - mVoxels.min[axis]);
+        mSolidHigh[axis] = float(mSolid.max[axis] - mVoxels.min[axis]);
+    }
     const Index3 solid = mSolid.size();
     mReach = 0.5f * float(length(Vec3d{double(solid.x), double(solid.y), double(solid.z)}));
     const Index3 twice = mSolid.min + mSolid.max - mVoxels.min * 2;
@@ -65,14 +69,14 @@ TracedSurface::TracedSurface(const openvdb::FloatGrid& grid, const RunContext& c
 }
 
 void TracedSurface::layOut(const BrickField& field, const RunContext& ctx) {
-    mSlots.assign(latticeCount(mBricks), kOutside);
+    mSlots.assign(latticeCount(mBricks), kAllOutside);
     parallelFor(ctx, mSlots.size(), 512, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) {
             float value = 0;
             // With the samples of the next bricks that cells of this one reach.
             const Index3 low = latticeVoxel(b, mBricks) * kCells;
             if (field.constantIn({low, low + Index3{kCells, kCells, kCells}}, value))
-                mSlots[b] = value < 0 ? kInside : kOutside;
+                mSlots[b] = value < 0 ? kAllInside : kAllOutside;
             else
                 mSlots[b] = 0;
         }
@@ -80,16 +84,16 @@ void TracedSurface::layOut(const BrickField& field, const RunContext& ctx) {
     std::int32_t stored = 0;
     for (std::int32_t& slot : mSlots)
         if (slot == 0) slot = stored++;
-    requireMemory(ctx, double(stored) * kStored * sizeof(std::int16_t), "drawing this model",
+    requireMemory(ctx, double(stored) * kBrickSamples * sizeof(std::int16_t), "drawing this model",
                   "use larger voxels");
-    mSamples.resize(std::size_t(stored) * kStored);
+    mSamples.resize(std::size_t(stored) * kBrickSamples);
     parallelFor(ctx, mSlots.size(), 64, [&](std::size_t begin, std::size_t end) {
-        float values[kStored];
+        float values[kBrickSamples];
         for (std::size_t b = begin; b < end; ++b) {
             if (mSlots[b] < 0) continue;
-            field.readBox(latticeVoxel(b, mBricks) * kCells, {kAround, kAround, kAround}, values);
-            std::int16_t* out = mSamples.data() + std::size_t(mSlots[b]) * kStored;
-            for (int i = 0; i < kStored; ++i)
+            field.readBox(latticeVoxel(b, mBricks) * kCells, {kStride, kStride, kStride}, values);
+            std::int16_t* out = mSamples.data() + std::size_t(mSlots[b]) * kBrickSamples;
+            for (int i = 0; i < kBrickSamples; ++i)
                 out[i] = std::int16_t(std::lround(std::clamp(values[i] / mScale, -32767.f, 32767.f)));
         }
     });
@@ -128,10 +132,10 @@ std::vector<Vec3d> TracedSurface::outline() const {
     std::vector<Vec3d> places;
     for (std::size_t b = 0; b < mSlots.size(); ++b) {
         if (mSlots[b] < 0) continue;
-        const std::int16_t* samples = mSamples.data() + std::size_t(mSlots[b]) * kStored;
-        IndexBox solid{{kAround, kAround, kAround}, {-1, -1, -1}};
+        const std::int16_t* samples = mSamples.data() + std::size_t(mSlots[b]) * kBrickSamples;
+        IndexBox solid{{kStride, kStride, kStride}, {-1, -1, -1}};
         forEachVoxel(IndexBox::fromSize({kCells, kCells, kCells}), [&](const Index3& p) {
-            if (samples[(p.x * kAround + p.y) * kAround + p.z] >= 0) return;
+            if (samples[(p.x * kStride + p.y) * kStride + p.z] >= 0) return;
             for (int axis = 0; axis < 3; ++axis) {
                 solid.min[axis] = std::min(solid.min[axis], p[axis]);
                 solid.max[axis] = std::max(solid.max[axis], p[axis]);
@@ -154,10 +158,10 @@ double TracedSurface::lowest(const Vec3d& axis) const {
     double least = 1e300;
     for (std::size_t b = 0; b < mSlots.size(); ++b) {
         if (mSlots[b] < 0) continue;
-        const std::int16_t* samples = mSamples.data() + std::size_t(mSlots[b]) * kStored;
+        const std::int16_t* samples = mSamples.data() + std::size_t(mSlots[b]) * kBrickSamples;
         const Index3 low = latticeVoxel(b, mBricks) * kCells;
         forEachVoxel(IndexBox::fromSize({kCells, kCells, kCells}), [&](const Index3& p) {
-            const std::int16_t value = samples[(p.x * kAround + p.y) * kAround + p.z];
+            const std::int16_t value = samples[(p.x * kStride + p.y) * kStride + p.z];
             if (value >= 0) return;
             const Index3 q = low + p;
             least = std::min(least, dot(axis, Vec3d{double(q.x), double(q.y), double(q.z)}) +
@@ -165,61 +169,6 @@ double TracedSurface::lowest(const Vec3d& axis) const {
         });
     }
     return least < 1e300 ? least : dot(axis, cast<double>(mMiddle));
-}
-
-float TracedSurface::bandDistance(const Vec3f& p) const {
-    const int x = int(std::floor(p.x)), y = int(std::floor(p.y)), z = int(std::floor(p.z));
-    const int bx = x >> 3, by = y >> 3, bz = z >> 3;
-    if (bx < 0 || by < 0 || bz < 0 || bx >= mBricks.x || by >= mBricks.y || bz >= mBricks.z) return mLimit;
-    const std::int32_t slot = mSlots[latticeIndex({bx, by, bz}, mBricks)];
-    if (slot < 0) return slot == kInside ? -mLimit : mLimit;
-    const std::int16_t* s =
-        mSamples.data() + std::size_t(slot) * kStored + ((x & 7) * kAround + (y & 7)) * kAround + (z & 7);
-    const float fx = p.x - float(x), fy = p.y - float(y), fz = p.z - float(z);
-    const auto along = [fz](const std::int16_t* q) { return float(q[0]) + (float(q[1]) - float(q[0])) * fz; };
-    constexpr int kY = kAround, kX = kAround * kAround;
-    const float low = along(s) + (along(s + kY) - along(s)) * fy;
-    const float high = along(s + kX) + (along(s + kX + kY) - along(s + kX)) * fy;
-    return (low + (high - low) * fx) * mScale;
-}
-
-float TracedSurface::coarseAt(const Vec3f& p) const {
-    Vec3f q = (p - Vec3f{1, 1, 1} * (0.5f * float(mCoarseness - 1))) * (1 / float(mCoarseness));
-    Index3 base;
-    for (int axis = 0; axis < 3; ++axis) {
-        q[axis] = std::clamp(q[axis], 0.f, float(mFarSize[axis] - 1));
-        base[axis] = std::min(int(q[axis]), std::max(0, mFarSize[axis] - 2));
-    }
-    const Index3 next{mFarSize.x > 1, mFarSize.y > 1, mFarSize.z > 1};
-    const float fx = q.x - float(base.x), fy = q.y - float(base.y), fz = q.z - float(base.z);
-    const std::size_t kY = std::size_t(mFarSize.z) * std::size_t(next.y);
-    const std::size_t kX = std::size_t(mFarSize.y) * std::size_t(mFarSize.z) * std::size_t(next.x);
-    const float* s = mFar.data() + latticeIndex(base, mFarSize);
-    const auto along = [&](const float* r) { return r[0] + (r[next.z] - r[0]) * fz; };
-    const float low = along(s) + (along(s + kY) - along(s)) * fy;
-    const float high = along(s + kX) + (along(s + kX + kY) - along(s + kX)) * fy;
-    return low + (high - low) * fx;
-}
-
-float TracedSurface::farDistance(const Vec3f& p) const {
-    const Index3 size = mVoxels.size();
-    Vec3f inside;
-    for (int axis = 0; axis < 3; ++axis) inside[axis] = std::clamp(p[axis], 0.f, float(size[axis] - 1));
-    const Vec3f apart = p - inside;
-    const float beyond = dot(apart, apart);
-    if (beyond > 0) {
-        // No nearer than the solid's box, nor than the triangle inequality allows.
-        Vec3f off;
-        for (int axis = 0; axis < 3; ++axis) {
-            const float low = float(mSolid.min[axis] - mVoxels.min[axis]),
-                        high = float(mSolid.max[axis] - mVoxels.min[axis]);
-            off[axis] = std::max({low - p[axis], 0.f, p[axis] - high});
-        }
-        return std::max(length(off), coarseAt(inside) - std::sqrt(beyond));
-    }
-    const float band = bandDistance(p);
-    if (band < 0.8f * mLimit) return std::max(0.f, band);
-    return std::max(band, coarseAt(p));
 }
 
 Vec3f TracedSurface::normalAt(const Vec3f& p) const {
@@ -241,7 +190,7 @@ bool TracedSurface::meets(const Vec3f& origin, const Vec3f& direction, float& al
     for (int axis = 0; axis < 3; ++axis) {
         inverse[axis] = 1 / (std::abs(direction[axis]) > 1e-12f ? direction[axis] : 1e-12f);
         const float low = (0.f - origin[axis]) * inverse[axis];
-        const float high = (float(mVoxels.size()[axis] - 1) - origin[axis]) * inverse[axis];
+        const float high = (mLast[axis] - origin[axis]) * inverse[axis];
         begin = std::max(begin, std::min(low, high));
         end = std::min(end, std::max(low, high));
     }
@@ -253,7 +202,7 @@ bool TracedSurface::meets(const Vec3f& origin, const Vec3f& direction, float& al
             latticeIndex({std::clamp(brick.x, 0, mBricks.x - 1), std::clamp(brick.y, 0, mBricks.y - 1),
                           std::clamp(brick.z, 0, mBricks.z - 1)},
                          mBricks);
-        if (mSlots[b] == kOutside) {
+        if (mSlots[b] == kAllOutside) {
             // To where the ray leaves the empty bricks around this one.
             const int k = mEmpty[b];
             float leave = 1e30f;

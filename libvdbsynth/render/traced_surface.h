@@ -2,9 +2,12 @@
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/math/affine.h"
 #include "libvdbsynth/math/index_box.h"
+#include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/math/vec3.h"
 #include "libvdbsynth/vdb/vdb_fwd.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -19,7 +22,7 @@ class BrickField;
 class TracedSurface {
 public:
     /// @throw Error EmptyInput (no inside), Memory, Cancelled
-    /// @par Cost    1.5 kB per brick of the band; distances: O(voxels near the surface + up to 2.5 million)
+    /// @par Cost    1.5 kB per brick of the band; distances: O(voxels near the surface + up to a million)
     /// @par Repeats same bits for any number of threads
     explicit TracedSurface(const openvdb::FloatGrid& grid, const RunContext& ctx = {});
 
@@ -45,6 +48,12 @@ public:
     /// Distance to the surface at any place, also outside the voxels: exact in the band, within a sample's
     /// diagonal (coarseness() * 1.8) elsewhere, never negative.
     float farDistance(const Vec3f& p) const;
+    /// True outside the voxels, where distances are lower bounds.
+    bool isBeyond(const Vec3f& p) const {
+        for (int axis = 0; axis < 3; ++axis)
+            if (p[axis] < 0 || p[axis] > mLast[axis]) return true;
+        return false;
+    }
     int coarseness() const { return mCoarseness; }
     /// Unit normal: central differences of trilinear distances over three quarters of a voxel, which are
     /// continuous, where the gradient of a trilinear cell is not.
@@ -54,6 +63,8 @@ public:
     Vec3f middle() const { return mMiddle; }
 
 private:
+    static constexpr int kStride = 9, kBrickSamples = kStride * kStride * kStride;
+    static constexpr std::int32_t kAllOutside = -1, kAllInside = -2;  // of slots
     void layOut(const BrickField& field, const RunContext& ctx);
     void measureEmptiness();
     float coarseAt(const Vec3f& p) const;
@@ -71,7 +82,61 @@ private:
     Index3 mFarSize;
     std::vector<float> mFar;
     float mReach = 0;
-    Vec3f mMiddle;
+    Vec3f mMiddle, mLast;  // mLast: the last voxel's place
+    Vec3f mSolidLow, mSolidHigh;
 };
+
+// Inline, as millions of rays ask many times each.
+inline float TracedSurface::bandDistance(const Vec3f& p) const {
+    // The processors that everything runs on have no instruction for std::floor.
+    const auto below = [](float v) { return int(v) - (v < float(int(v)) ? 1 : 0); };
+    const int x = below(p.x), y = below(p.y), z = below(p.z);
+    const int bx = x >> 3, by = y >> 3, bz = z >> 3;
+    if (bx < 0 || by < 0 || bz < 0 || bx >= mBricks.x || by >= mBricks.y || bz >= mBricks.z) return mLimit;
+    const std::int32_t slot = mSlots[latticeIndex({bx, by, bz}, mBricks)];
+    if (slot < 0) return slot == kAllInside ? -mLimit : mLimit;
+    const std::int16_t* s = mSamples.data() + std::size_t(slot) * kBrickSamples +
+                            ((x & 7) * kStride + (y & 7)) * kStride + (z & 7);
+    const float fx = p.x - float(x), fy = p.y - float(y), fz = p.z - float(z);
+    const auto along = [fz](const std::int16_t* q) { return float(q[0]) + (float(q[1]) - float(q[0])) * fz; };
+    constexpr int kY = kStride, kX = kStride * kStride;
+    const float low = along(s) + (along(s + kY) - along(s)) * fy;
+    const float high = along(s + kX) + (along(s + kX + kY) - along(s + kX)) * fy;
+    return (low + (high - low) * fx) * mScale;
+}
+
+inline float TracedSurface::coarseAt(const Vec3f& p) const {
+    Vec3f q = (p - Vec3f{1, 1, 1} * (0.5f * float(mCoarseness - 1))) * (1 / float(mCoarseness));
+    Index3 base;
+    for (int axis = 0; axis < 3; ++axis) {
+        q[axis] = std::clamp(q[axis], 0.f, float(mFarSize[axis] - 1));
+        base[axis] = std::min(int(q[axis]), std::max(0, mFarSize[axis] - 2));
+    }
+    const Index3 next{mFarSize.x > 1, mFarSize.y > 1, mFarSize.z > 1};
+    const float fx = q.x - float(base.x), fy = q.y - float(base.y), fz = q.z - float(base.z);
+    const std::size_t kY = std::size_t(mFarSize.z) * std::size_t(next.y);
+    const std::size_t kX = std::size_t(mFarSize.y) * std::size_t(mFarSize.z) * std::size_t(next.x);
+    const float* s = mFar.data() + latticeIndex(base, mFarSize);
+    const auto along = [&](const float* r) { return r[0] + (r[next.z] - r[0]) * fz; };
+    const float low = along(s) + (along(s + kY) - along(s)) * fy;
+    const float high = along(s + kX) + (along(s + kX + kY) - along(s + kX)) * fy;
+    return low + (high - low) * fx;
+}
+
+inline float TracedSurface::farDistance(const Vec3f& p) const {
+    if (isBeyond(p)) {
+        // No nearer than the solid's box, nor than the triangle inequality allows.
+        Vec3f inside, off;
+        for (int axis = 0; axis < 3; ++axis) {
+            inside[axis] = std::clamp(p[axis], 0.f, mLast[axis]);
+            off[axis] = std::max({mSolidLow[axis] - p[axis], 0.f, p[axis] - mSolidHigh[axis]});
+        }
+        return std::max(length(off), coarseAt(inside) - length(p - inside));
+    }
+    const float coarse = coarseAt(p);
+    if (coarse > mLimit + 1.8f * float(mCoarseness)) return coarse;
+    const float band = bandDistance(p);
+    return band < 0.8f * mLimit ? std::max(0.f, band) : std::max(band, coarse);
+}
 
 }  // namespace vdbsynth

@@ -18,7 +18,7 @@
 namespace vdbsynth {
 namespace {
 
-constexpr double kOpticalSide = 6;     // absorption across the cube of fog.h
+constexpr double kOpticalSide = 10;    // absorption across the cube of fog.h
 constexpr double kLightSamples = 3e5;  // of the volumes of light
 constexpr int kBrick = BrickField::kSide;
 
@@ -222,7 +222,7 @@ private:
 
 // What of the light is left after `absorbed`, scattered once and more often.
 float scattered(float absorbed) {
-    return 0.55f * decay(absorbed) + 0.30f * decay(0.4f * absorbed) + 0.15f * decay(0.12f * absorbed);
+    return 0.62f * decay(absorbed) + 0.27f * decay(0.35f * absorbed) + 0.11f * decay(0.1f * absorbed);
 }
 
 class FogDrawing final : public Drawing {
@@ -316,8 +316,8 @@ private:
             if (absorbed < 1e-5f) continue;
             const float left = decay(absorbed), key = scattered(view.sun.at(place)),
                         open = scattered(0.7f * view.sky.at(place));
-            Vec3f light = Vec3f{1.02f, 0.97f, 0.90f} * (0.95f * key) +
-                          Vec3f{0.50f, 0.56f, 0.66f} * (0.42f * open + 0.05f);
+            Vec3f light = Vec3f{1.02f, 0.97f, 0.90f} * (0.92f * key) +
+                          Vec3f{0.50f, 0.56f, 0.66f} * (0.36f * open + 0.03f);
             Vec3f tint;
             if (colours && colours->at(mFog.worldOf(cast<double>(place)), tint))
                 light = {light.x * lightOf(tint.x), light.y * lightOf(tint.y), light.z * lightOf(tint.z)};

@@ -13,7 +13,7 @@ namespace vdbsynth {
 /// [wrenninge2013]. The ground shows the fog's shadow.
 ///
 /// Densities have no common unit, so absorption follows the volume: a cube that holds all its density at the
-/// mean density of the dense part (sum of squares / sum) absorbs all but exp(-6 * options.density) across a
+/// mean density of the dense part (sum of squares / sum) absorbs all but exp(-10 * options.density) across a
 /// side. `directions` and `wires` have no meaning here; `colours` tints.
 /// @param fog  densities, those below 0 count as 0; any linear transform
 /// @throw Error InvalidOption, EmptyInput (no density above 0), BadData (a transform that is not linear, NaN

@@ -2,6 +2,8 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/distance/zero_level.h"
+#include "libvdbsynth/grid/brick_field.h"
 #include "libvdbsynth/render/shading.h"
 #include "libvdbsynth/render/surface_colours.h"
 #include "libvdbsynth/render/traced_surface.h"
@@ -10,32 +12,53 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
-#include <set>
 
 namespace vdbsynth {
 namespace {
 
-// As few triangles as asked for: larger parts merged until it is enough.
-Mesh reduced(const openvdb::FloatGrid& grid, std::size_t most, std::size_t& before, const RunContext& ctx) {
-    Mesh whole = levelSetToMesh(grid, {}, ctx);
-    const auto count = [](const Mesh& mesh) { return mesh.triangles.size() + 2 * mesh.quads.size(); };
-    before = count(whole);
-    if (before <= most) return whole;
-    for (const double adaptivity : {0.05, 0.2, 0.5}) {
-        MeshingOptions options;
-        options.adaptivity = adaptivity;
-        Mesh merged = levelSetToMesh(grid, options, ctx);
-        if (count(merged) <= most) return merged;
+// Between far samples the surface is where a line says, not where it is.
+Mesh ontoSurface(Mesh mesh, const TracedSurface& surface, const RunContext& ctx) {
+    parallelFor(ctx, mesh.points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Vec3f here = cast<float>(surface.placeHere(cast<double>(mesh.points[i]) + mesh.origin));
+            for (int step = 0; step < 3; ++step)
+                here = here - surface.normalAt(here) * std::clamp(surface.bandDistance(here), -1.f, 1.f);
+            mesh.points[i] = cast<float>(transformed(surface.toWorld(), cast<double>(here)) - mesh.origin);
+        }
+    });
+    return mesh;
+}
+
+// The zero level of every `step`-th voxel, on the surface.
+Mesh coarser(const TracedSurface& surface, double step, const RunContext& ctx) {
+    const Index3 size = surface.voxels().size();
+    Index3 count;
+    for (int axis = 0; axis < 3; ++axis) count[axis] = int(size[axis] / step) + 2;
+    const BrickField field = BrickField::fromVoxels(IndexBox::fromSize(count), ctx, [&](const Index3& p) {
+        return surface.bandDistance({float(p.x * step), float(p.y * step), float(p.z * step)});
+    });
+    Mesh mesh = zeroLevel(field, field.box(), Facing::Outward, ctx);
+    for (Vec3f& p : mesh.points) {
+        const Vec3d world = transformed(surface.toWorld(), cast<double>(p) * step);
+        if (&p == &mesh.points.front()) mesh.origin = world;
+        p = cast<float>(world - mesh.origin);
     }
-    // Cells of c voxels leave about one vertex in c^2.
-    double cell = std::max(1.2, std::sqrt(double(before) / double(most))) * voxelSizeOf(grid);
-    for (;;) {
-        Mesh merged = clustered(whole, cell);
-        if (count(merged) <= most) return merged;
-        cell *= 1.12;
+    return ontoSurface(std::move(mesh), surface, ctx);
+}
+
+Mesh reduced(const openvdb::FloatGrid& grid, const TracedSurface& surface, std::size_t most,
+             std::size_t& before, const RunContext& ctx) {
+    Mesh mesh = levelSetToMesh(grid, {}, ctx);
+    const auto count = [&] { return mesh.triangles.size() + 2 * mesh.quads.size(); };
+    before = count();
+    // Triangles go with the square of the voxels' side.
+    double step = 1;
+    while (count() > most) {
+        step *= std::max(1.03, 1.01 * std::sqrt(double(count()) / double(most)));
+        mesh = coarser(surface, step, ctx);
     }
+    return mesh;
 }
 
 void append(std::string& bytes, std::uint32_t value) {
@@ -77,9 +100,8 @@ struct Looks {
     float open = 1;
 };
 
-std::vector<Looks> looksOf(const std::vector<Vec3d>& places, const openvdb::FloatGrid& grid,
+std::vector<Looks> looksOf(const std::vector<Vec3d>& places, const TracedSurface& surface,
                            const GridConstPtr& colours, const RunContext& ctx) {
-    const TracedSurface surface(grid, ctx);
     Camera camera;  // turns the cube of directions only
     camera.forward = {-0.48, 0.77, -0.43};
     camera.right = {0.85, 0.53, 0};
@@ -108,42 +130,12 @@ std::vector<Looks> looksOf(const std::vector<Vec3d>& places, const openvdb::Floa
 
 }  // namespace
 
-Mesh clustered(const Mesh& mesh, double cell) {
-    std::map<Index3, std::uint32_t> cells;
-    std::vector<std::uint32_t> target(mesh.points.size());
-    Mesh result;
-    std::vector<Vec3d> sums;
-    std::vector<double> counts;
-    for (std::size_t i = 0; i < mesh.points.size(); ++i) {
-        Index3 at;
-        for (int axis = 0; axis < 3; ++axis) at[axis] = int(std::floor(double(mesh.points[i][axis]) / cell));
-        const auto found = cells.emplace(at, std::uint32_t(sums.size()));
-        if (found.second) {
-            sums.emplace_back();
-            counts.push_back(0);
-        }
-        target[i] = found.first->second;
-        sums[target[i]] = sums[target[i]] + cast<double>(mesh.points[i]);
-        counts[target[i]] += 1;
-    }
-    for (std::size_t i = 0; i < sums.size(); ++i)
-        result.points.push_back(cast<float>(sums[i] * (1 / counts[i])));
-    result.origin = mesh.origin;
-    std::set<Triangle> seen;
-    for (const Triangle& t : triangulated(mesh)) {
-        Triangle u{target[t[0]], target[t[1]], target[t[2]]};
-        if (u[0] == u[1] || u[1] == u[2] || u[2] == u[0]) continue;
-        std::rotate(u.begin(), std::min_element(u.begin(), u.end()), u.end());
-        if (seen.insert(u).second) result.triangles.push_back(u);
-    }
-    return result;
-}
-
 PackedMesh packedMesh(const openvdb::FloatGrid& grid, const GridConstPtr& colours, std::size_t most,
                       const RunContext& ctx) {
     requireOption(most >= 100, "most", std::to_string(most), "at least 100 triangles");
     PackedMesh packed;
-    const Mesh mesh = reduced(grid, most, packed.before, ctx);
+    const TracedSurface surface(grid, ctx);
+    const Mesh mesh = reduced(grid, surface, most, packed.before, ctx);
     const std::vector<Triangle> triangles = triangulated(mesh);
     packed.triangles = triangles.size();
     const std::vector<std::uint32_t> order = appendCorners(triangles, mesh.points.size(), packed.corners);
@@ -159,7 +151,7 @@ PackedMesh packedMesh(const openvdb::FloatGrid& grid, const GridConstPtr& colour
         }
     }
     packed.coloured = colours != nullptr;
-    const std::vector<Looks> looks = looksOf(places, grid, colours, ctx);
+    const std::vector<Looks> looks = looksOf(places, surface, colours, ctx);
     for (std::size_t i = 0; i < places.size(); ++i) {
         for (int axis = 0; axis < 3; ++axis) {
             const double side = std::max(packed.high[axis] - packed.low[axis], 1e-300);

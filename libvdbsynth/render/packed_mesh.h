@@ -11,7 +11,7 @@ namespace vdbsynth {
 /// A model's surface in few bytes, for a page that draws it. Numbers are little-endian.
 struct PackedMesh {
     std::size_t vertices = 0, triangles = 0;
-    std::size_t before = 0;  ///< triangles of the zero level, before some were merged
+    std::size_t before = 0;  ///< triangles of the zero level, at its own voxels
     Vec3d low, high;         ///< [world] box of the vertices
     bool coloured = false;
     std::string positions;  ///< three 16-bit numbers a vertex: 0 is `low`, 65535 `high`
@@ -27,19 +27,14 @@ struct PackedMesh {
     }
 };
 
-/// The zero level of a level set, with at most about `most` triangles: flat parts are merged, and where that
-/// is not enough vertices are merged in cells. Normals, colours and what of the sky a vertex sees come from
-/// the level set, whatever was merged.
+/// The zero level of a level set, with at most `most` triangles: where it has more, that of samples as far
+/// apart as gives so few, its vertices moved onto the surface; what is thinner than that is lost. Normals,
+/// colours and what of the sky a vertex sees come from the level set itself.
 /// @param colours  as PreviewOptions'; null: none
 /// @param most     at least 100
 /// @throw Error InvalidOption, BadData (colours of another type), EmptyInput, Memory, Cancelled
 /// @par Repeats same bits for any number of threads
 PackedMesh packedMesh(const openvdb::FloatGrid& grid, const GridConstPtr& colours, std::size_t most,
                       const RunContext& ctx = {});
-
-/// Merges the vertices of each cell of a lattice at their mean, and leaves out triangles that lose a corner
-/// or repeat another. Quads become triangles. @param cell  [the mesh's unit] above 0
-/// @par Cost O(n log n)   @par Repeats yes
-Mesh clustered(const Mesh& mesh, double cell);
 
 }  // namespace vdbsynth

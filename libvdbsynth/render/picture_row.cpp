@@ -32,12 +32,15 @@ std::string fitting(const std::string& label, int size, int width) {
 
 }  // namespace
 
-void labelPicture(Picture& picture, const std::string& label) {
+void labelPicture(Picture& picture, const std::string& label, bool boxed) {
     const int size = std::max(7, int(picture.height * kLabelShare * 0.30));
     const std::string text = fitting(label, size, picture.width - size);
     const int base = picture.height - int(picture.height * kLabelShare * 0.36);
-    drawText(picture, text, (picture.width - textWidth(text, size)) / 2, base, size,
-             inkOn(picture, std::max(0, base - size)));
+    const int width = textWidth(text, size), left = (picture.width - width) / 2;
+    if (boxed && width > 0)
+        blendRectangle(picture, left - size / 2, base - size * 3 / 2, left + width + size / 2,
+                       base + size * 2 / 3, {255, 255, 255}, 0.82);
+    drawText(picture, text, left, base, size, boxed ? kDark : inkOn(picture, std::max(0, base - size)));
 }
 
 Picture pictureRow(const std::vector<Picture>& pictures) {

@@ -110,18 +110,18 @@ Vec3f Lighting::skyColour(float height) const {
 float Lighting::sunAt(const Vec3f& place) const {
     const float end = 2.2f * mSurface->reach() + length(place - mSurface->middle());
     float passes = 1, way = 0.6f, before = 1e20f;
-    for (int step = 0; step < 96 && way < end; ++step) {
-        const Vec3f p = place + mSun * way;
-        const float distance = mSurface->farDistance(p);
+    for (int step = 0; step < 128 && way < end; ++step) {
+        const float distance = mSurface->farDistance(place + mSun * way);
         // The nearest point between two steps, from where their balls meet.
         const float back = std::min(distance * distance / (2 * before), 0.85f * distance);
         const float aside = std::sqrt(std::max(0.f, distance * distance - back * back));
         passes = std::min(passes, kSharpness * aside / std::max(0.3f, way - back));
         if (passes < 0.004f) return 0;
         if (distance > 2.5f * mSurface->reach()) break;
-        // Beyond the voxels distances are bounds, which two steps do not fit together.
-        before = mSurface->isBeyond(p) ? 1e20f : std::max(distance, 1e-3f);
-        way += std::max(0.4f + 0.008f * way, distance * 0.75f);
+        before = std::max(distance, 1e-3f);
+        // Smaller steps where a part of the light is hidden.
+        const bool partly = kSharpness * distance < 1.4f * way;
+        way += std::max(0.4f + 0.006f * way, distance * (partly ? 0.4f : 0.8f));
     }
     return smooth(std::clamp(passes, 0.f, 1.f));
 }

@@ -51,8 +51,6 @@ TracedSurface::TracedSurface(const openvdb::FloatGrid& grid, const RunContext& c
                (size.z + kCells - 1) / kCells};
     for (int axis = 0; axis < 3; ++axis) {
         mLast[axis] = float(size[axis] - 1);
-        mSolidLow[axis] = float(mSolid.min[axis] - mVoxels.min[axis]);
-        mSolidHigh[axis] = float(mSolid.max[axis] - mVoxels.min[axis]);
     }
     const Index3 solid = mSolid.size();
     mReach = 0.5f * float(length(Vec3d{double(solid.x), double(solid.y), double(solid.z)}));
@@ -128,27 +126,30 @@ Vec3d TracedSurface::directionHere(const Vec3d& world) const {
     return Vec3d{dot(world, mAxes[0]), dot(world, mAxes[1]), dot(world, mAxes[2])} * squared;
 }
 
+// The places of the surface next to a brick's voxels, or of a large model the corners of what a brick holds.
 std::vector<Vec3d> TracedSurface::outline() const {
+    constexpr std::size_t kManyBricks = 30000;
+    const bool many = mSamples.size() / kBrickSamples > kManyBricks;
     std::vector<Vec3d> places;
     for (std::size_t b = 0; b < mSlots.size(); ++b) {
         if (mSlots[b] < 0) continue;
         const std::int16_t* samples = mSamples.data() + std::size_t(mSlots[b]) * kBrickSamples;
-        IndexBox solid{{kStride, kStride, kStride}, {-1, -1, -1}};
-        forEachVoxel(IndexBox::fromSize({kCells, kCells, kCells}), [&](const Index3& p) {
-            if (samples[(p.x * kStride + p.y) * kStride + p.z] >= 0) return;
-            for (int axis = 0; axis < 3; ++axis) {
-                solid.min[axis] = std::min(solid.min[axis], p[axis]);
-                solid.max[axis] = std::max(solid.max[axis], p[axis]);
-            }
-        });
-        if (solid.empty()) continue;
         const Index3 low = latticeVoxel(b, mBricks) * kCells;
-        for (int c = 0; c < 8; ++c) {
-            Vec3d p;
-            for (int axis = 0; axis < 3; ++axis)
-                p[axis] = low[axis] + (c >> axis & 1 ? solid.max[axis] + 0.5 : solid.min[axis] - 0.5);
-            places.push_back(transformed(mToWorld, p));
-        }
+        Vec3d least{1e300, 1e300, 1e300}, most{-1e300, -1e300, -1e300};
+        forEachVoxel(IndexBox::fromSize({kCells, kCells, kCells}), [&](const Index3& p) {
+            const float value = float(samples[(p.x * kStride + p.y) * kStride + p.z]) * mScale;
+            if (value >= 0 || value < -1.2f) return;
+            Vec3f here{float(low.x + p.x), float(low.y + p.y), float(low.z + p.z)};
+            if (!many) here = here - normalAt(here) * value;
+            for (int axis = 0; axis < 3; ++axis) {
+                least[axis] = std::min(least[axis], double(here[axis]));
+                most[axis] = std::max(most[axis], double(here[axis]));
+            }
+            if (!many) places.push_back(transformed(mToWorld, cast<double>(here)));
+        });
+        for (int c = 0; many && most.x >= least.x && c < 8; ++c)
+            places.push_back(transformed(
+                mToWorld, {c & 1 ? most.x : least.x, c & 2 ? most.y : least.y, c & 4 ? most.z : least.z}));
     }
     if (places.empty()) places.push_back(transformed(mToWorld, cast<double>(mMiddle)));
     return places;
@@ -162,7 +163,7 @@ double TracedSurface::lowest(const Vec3d& axis) const {
         const Index3 low = latticeVoxel(b, mBricks) * kCells;
         forEachVoxel(IndexBox::fromSize({kCells, kCells, kCells}), [&](const Index3& p) {
             const std::int16_t value = samples[(p.x * kStride + p.y) * kStride + p.z];
-            if (value >= 0) return;
+            if (value >= 0 || float(value) * mScale < -1.2f) return;
             const Index3 q = low + p;
             least = std::min(least, dot(axis, Vec3d{double(q.x), double(q.y), double(q.z)}) +
                                         double(value) * double(mScale));

@@ -45,15 +45,9 @@ public:
     bool meets(const Vec3f& origin, const Vec3f& direction, float& along) const;
     /// Trilinear distance, clamped to the band, negative inside.
     float bandDistance(const Vec3f& p) const;
-    /// Distance to the surface at any place, also outside the voxels: exact in the band, within a sample's
-    /// diagonal (coarseness() * 1.8) elsewhere, never negative.
+    /// Distance to the surface at any place: exact in the band, within a sample's
+    /// diagonal (coarseness() * 1.8) elsewhere in the voxels, a lower bound outside of them, never negative.
     float farDistance(const Vec3f& p) const;
-    /// True outside the voxels, where distances are lower bounds.
-    bool isBeyond(const Vec3f& p) const {
-        for (int axis = 0; axis < 3; ++axis)
-            if (p[axis] < 0 || p[axis] > mLast[axis]) return true;
-        return false;
-    }
     int coarseness() const { return mCoarseness; }
     /// Unit normal: central differences of trilinear distances over three quarters of a voxel, which are
     /// continuous, where the gradient of a trilinear cell is not.
@@ -68,6 +62,11 @@ private:
     void layOut(const BrickField& field, const RunContext& ctx);
     void measureEmptiness();
     float coarseAt(const Vec3f& p) const;
+    bool isBeyond(const Vec3f& p) const {
+        for (int axis = 0; axis < 3; ++axis)
+            if (p[axis] < 0 || p[axis] > mLast[axis]) return true;
+        return false;
+    }
 
     IndexBox mVoxels, mSolid;
     Affine mToWorld{};
@@ -83,7 +82,6 @@ private:
     std::vector<float> mFar;
     float mReach = 0;
     Vec3f mMiddle, mLast;  // mLast: the last voxel's place
-    Vec3f mSolidLow, mSolidHigh;
 };
 
 // Inline, as millions of rays ask many times each.
@@ -125,13 +123,13 @@ inline float TracedSurface::coarseAt(const Vec3f& p) const {
 
 inline float TracedSurface::farDistance(const Vec3f& p) const {
     if (isBeyond(p)) {
-        // No nearer than the solid's box, nor than the triangle inequality allows.
-        Vec3f inside, off;
-        for (int axis = 0; axis < 3; ++axis) {
-            inside[axis] = std::clamp(p[axis], 0.f, mLast[axis]);
-            off[axis] = std::max({mSolidLow[axis] - p[axis], 0.f, p[axis] - mSolidHigh[axis]});
-        }
-        return std::max(length(off), coarseAt(inside) - length(p - inside));
+        // Seen from the nearest place of the box, which is convex, the surface and p are at least a right
+        // angle apart.
+        Vec3f inside;
+        for (int axis = 0; axis < 3; ++axis) inside[axis] = std::clamp(p[axis], 0.f, mLast[axis]);
+        const Vec3f apart = p - inside;
+        const float there = coarseAt(inside);
+        return std::sqrt(there * there + dot(apart, apart));
     }
     const float coarse = coarseAt(p);
     if (coarse > mLimit + 1.8f * float(mCoarseness)) return coarse;

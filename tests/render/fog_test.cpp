@@ -70,7 +70,7 @@ TEST_CASE("drawingOfFog: the unit of densities and of the world does not matter"
 TEST_CASE("drawingOfFog: density makes it thicker, the side from the light is brighter", "[vdb]") {
     const auto grid = cloud(20, 1);
     PreviewOptions options = clear();
-    options.density = 0.1;
+    options.density = 0.03;
     const Picture thin = drawn(*grid, options);
     options.density = 1;
     const Picture thick = drawn(*grid, options);

@@ -92,9 +92,9 @@ TEST_CASE("packedMesh: few triangles where few are asked for, still a ball", "[v
     for (const std::size_t most : {8000u, 900u}) {
         const PackedMesh packed = packedMesh(*grid, nullptr, most);
         CHECK(packed.triangles <= most);
-        CHECK(packed.triangles > most / 4);
+        CHECK(packed.triangles > most * 3 / 4);
         CHECK(packed.before > most);
-        for (const Vec3d& p : unpacked(packed).places) CHECK(length(p) == Approx(10).margin(0.4));
+        for (const Vec3d& p : unpacked(packed).places) CHECK(length(p) == Approx(10).margin(0.1));
     }
     CHECK(test::contains(test::thrownBy([&] { packedMesh(*grid, nullptr, 3); }).message, "`most`"));
 }
@@ -111,15 +111,4 @@ TEST_CASE("packedMesh: colours are the grid's", "[vdb][oracle]") {
         CHECK(int(std::uint8_t(packed.colours[i])) == 51);
         CHECK(int(std::uint8_t(packed.colours[i + 2])) == 153);
     }
-}
-
-TEST_CASE("clustered: one vertex a cell at the mean, and no triangle that lost a corner",
-          "[render][oracle]") {
-    Mesh mesh;
-    mesh.points = {{0.1f, 0.1f, 0}, {0.3f, 0.1f, 0}, {1.5f, 0.1f, 0}, {0.1f, 1.5f, 0}};
-    mesh.triangles = {{0, 2, 3}, {1, 2, 3}, {0, 1, 2}};
-    const Mesh result = clustered(mesh, 1);
-    REQUIRE(result.points.size() == 3);
-    CHECK(double(result.points[0].x) == Approx(0.2));
-    CHECK(result.triangles == std::vector<Triangle>{{0, 1, 2}});
 }

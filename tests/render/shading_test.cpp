@@ -47,15 +47,15 @@ TEST_CASE("Lighting: a ball hides the light from the ground behind it, and half 
     CHECK(lighting.sun().z > 0.5f);
     CHECK(lighting.sun().x < 0);  // from the left
     // Straight behind the ball, seen from the light; beside it; far away.
-    CHECK(lighting.sunAt(middle - lighting.sun() * 30) == 0);
-    CHECK(lighting.sunAt(middle + lighting.sun() * 30) == 1);
+    CHECK(lighting.sunAt(middle - lighting.sun() * 30.f) == 0);
+    CHECK(lighting.sunAt(middle + lighting.sun() * 30.f) == 1);
     CHECK(lighting.sunAt(middle + Vec3f{200, 0, -20}) > 0.99f);
     // Between is a soft edge: all values from dark to light, in order.
     const Vec3f across = normalized(cross(lighting.sun(), Vec3f{0, 0, 1}));
     float last = 0;
     int between = 0;
     for (float way = 0; way < 60; way += 0.5f) {
-        const float light = lighting.sunAt(middle - lighting.sun() * 45 + across * way);
+        const float light = lighting.sunAt(middle - lighting.sun() * 45.f + across * way);
         CHECK(light >= last - 0.03f);
         between += light > 0.05f && light < 0.95f;
         last = light;

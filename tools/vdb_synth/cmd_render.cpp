@@ -69,7 +69,8 @@ std::vector<Framing> framings(const RenderRequest& request, const Row& row) {
 }
 
 Picture labelled(Picture picture, const RenderRequest& request, std::size_t i) {
-    if (!request.labels.empty()) labelPicture(picture, request.labels[i]);
+    if (!request.labels.empty())
+        labelPicture(picture, request.labels[i], /* boxed= */ request.slice.has_value());
     return picture;
 }
 
@@ -108,16 +109,17 @@ void drawPictures(Run& run, const RenderRequest& request, const std::string& pat
     }
 }
 
-// Enough for every bump of a result of 128^3, and a page under 5 MB for one model.
-constexpr std::size_t kPageTriangles = 220000;
+// Of all models of a page: it stays under 5 MB, colours included.
+constexpr std::size_t kPageTriangles = 380000;
 
 void writePage(Run& run, const RenderRequest& request, const std::string& path) {
     std::vector<PageModel> models;
+    const std::size_t most = std::max<std::size_t>(20000, kPageTriangles / run.arguments.inputs.size());
     for (const std::string& name : run.arguments.inputs) {
         const ShownInput input = loadShown(run, name, request);
         PageModel model;
         model.name = run.withoutTemporaries(fileNameOf(name));
-        model.mesh = packedMesh(*input.model.grid, input.colours, kPageTriangles, run.context);
+        model.mesh = packedMesh(*input.model.grid, input.colours, most, run.context);
         model.up = input.up;
         model.view = input.view;
         if (model.mesh.triangles < model.mesh.before)

@@ -66,4 +66,27 @@ Picture pictureRow(const std::vector<Picture>& pictures) {
     return row;
 }
 
+Picture pictureRows(const std::vector<Picture>& pictures, std::size_t columns) {
+    requireOption(columns >= 1, "columns", std::to_string(columns), "at least 1");
+    if (pictures.size() <= columns) return pictureRow(pictures);
+    Picture blank = pictures.front();
+    const std::size_t channels = std::size_t(blank.channels), width = std::size_t(blank.width);
+    for (std::size_t i = 0; i < blank.pixels.size(); ++i)
+        blank.pixels[i] = pictures.front().pixels[i / (width * channels) * width * channels + i % channels];
+    Picture all;
+    for (std::size_t first = 0; first < pictures.size(); first += columns) {
+        const auto begin = pictures.begin() + std::ptrdiff_t(first);
+        std::vector<Picture> some(begin, begin + std::ptrdiff_t(std::min(columns, pictures.size() - first)));
+        some.resize(columns, blank);
+        const Picture row = pictureRow(some);
+        if (all.height == 0) all = Picture{row.width, 0, {}, row.channels};
+        if (row.width != all.width || all.height + row.height > 65535)
+            throw Error(ErrorCode::InvalidOption,
+                        "`size`: the rows are of different widths, or over 65535 pixels high together");
+        all.height += row.height;
+        all.pixels.insert(all.pixels.end(), row.pixels.begin(), row.pixels.end());
+    }
+    return all;
+}
+
 }  // namespace vdbsynth

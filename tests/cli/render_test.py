@@ -144,6 +144,8 @@ class Pictures(CliTest):
         (_, _, _, scaled), _ = self.draw("--same-scale", "--captions", "none", "--no-ground", inputs=["g.vdb", "h.vdb"], size="120x120")
         halves = [self.box_of([row[:360] for row in scaled]), self.box_of([row[360:] for row in scaled])]
         self.assertLess((halves[0][2] - halves[0][0]) * 1.5, halves[1][2] - halves[1][0])
+        (width, height, _, _), _ = self.draw("--columns", 2, inputs=["g.vdb", "h.vdb", "g.vdb"])
+        self.assertEqual((width, height), (320, 240))
         self.fails(2, "--captions a: has 1 captions for 2 models", "render", "g.vdb", "h.vdb", "-o", "y.png", "--captions", "a")
 
     def test_turntable(self):

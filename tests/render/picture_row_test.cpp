@@ -64,3 +64,16 @@ TEST_CASE("labelPicture: a label that is too wide is shortened in its middle", "
     }
     CHECK(changed > 60);
 }
+
+TEST_CASE("pictureRows: row below row, what is left is blank", "[render][oracle]") {
+    const Picture all = pictureRows({filled(3, 2, 10), filled(3, 2, 20), filled(3, 2, 30)}, 2);
+    CHECK(all.width == 6);
+    CHECK(all.height == 4);
+    for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 6; ++x)
+            CHECK(int(all.pixels[std::size_t(y * 6 + x) * 3]) == (y < 2   ? (x < 3 ? 10 : 20)
+                                                                  : x < 3 ? 30
+                                                                          : 10));
+    CHECK(pictureRows({filled(3, 2, 10)}, 5).width == 3);
+    CHECK(test::contains(test::thrownBy([] { pictureRows({filled(1, 1, 0)}, 0); }).message, "`columns`"));
+}

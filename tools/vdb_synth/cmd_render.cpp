@@ -81,7 +81,7 @@ void drawSlices(Run& run, const RenderRequest& request, const std::string& path)
         pictures.push_back(labelled(
             renderSlice(*input.model.grid, input.model.domain, *request.slice, run.context), request, i));
     }
-    writePng(run.outputs().add(path), pictureRow(pictures));
+    writePng(run.outputs().add(path), pictureRows(pictures, request.columns));
 }
 
 void drawPictures(Run& run, const RenderRequest& request, const std::string& path) {
@@ -105,7 +105,8 @@ void drawPictures(Run& run, const RenderRequest& request, const std::string& pat
                             [&] { return row.drawings[i]->drawn(cameras[i].cameras[n], run.context); }),
                 request, i));
         const std::string name = request.turntable > 0 ? atFrame(path, int(n) + 1) : path;
-        writePng(run.outputs().add(name), pictures.size() == 1 ? pictures.front() : pictureRow(pictures));
+        writePng(run.outputs().add(name),
+                 pictures.size() == 1 ? pictures.front() : pictureRows(pictures, request.columns));
     }
 }
 

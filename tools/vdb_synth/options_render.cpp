@@ -31,6 +31,9 @@ std::vector<Option> renderOptionTable() {
             .says(
                 "a caption below each model: texts with commas between them (\\, is a comma), names or none")
             .otherwiseIs("names, the files', of several models; none of one"),
+        whole("columns", "N", 1, 64)
+            .says("pictures side by side; more models go below")
+            .otherwiseIs("all in one row"),
         flag("same-scale").says("draw several models at one scale; without it each fills its picture"),
         option(Kind::Text, "background", "KIND")
             .says("studio (a soft grey), transparent, white, grey, black, or a colour such as #203040")

@@ -122,6 +122,7 @@ RenderRequest readRenderRequest(const Run& run) {
     if (arguments.text("up") == "z") request.up = UpAxis::Z;
     request.labels = readCaptions(run);
     request.colours = arguments.text("color");
+    if (arguments.has("columns")) request.columns = std::size_t(arguments.whole("columns"));
     request.turntable = arguments.whole("turntable");
     request.wireframe = arguments.has("wireframe");
     request.sameScale = arguments.has("same-scale");

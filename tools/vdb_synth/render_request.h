@@ -18,6 +18,7 @@ struct RenderRequest {
     std::optional<UpAxis> up;
     std::vector<std::string> labels;  ///< one a model; empty: none
     std::string colours;              ///< a grid's name, "none", or empty
+    std::size_t columns = 64;         ///< pictures side by side
     int turntable = 0;                ///< pictures, 0: a single one
     bool wireframe = false, sameScale = false, page = false;
 };

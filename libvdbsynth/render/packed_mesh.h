@@ -15,7 +15,7 @@ struct PackedMesh {
     Vec3d low, high;         ///< [world] box of the vertices
     bool coloured = false;
     std::string positions;  ///< three 16-bit numbers a vertex: 0 is `low`, 65535 `high`
-    std::string normals;    ///< two signed bytes a vertex: the octahedral map [cigolla2014]
+    std::string normals;    ///< two signed bytes a vertex: the octahedral map [cigolle2014]
     std::string open;       ///< a byte a vertex: how much of the sky it sees, 255 all
     std::string colours;    ///< three bytes a vertex as pictures hold them; empty unless coloured
     /// The corners of the triangles: how far each is below the number of vertices met so far, 0 for the next

@@ -110,11 +110,13 @@ class Pictures(CliTest):
         left, top, right, bottom = self.box_of(rows)
         self.assertGreater(right - left, bottom - top)
         self.assertNotIn("y up", said)
-        # --view is a direction of the model's world, whatever is up: from the front of z-up, at its underside of y-up.
+        # --view is a direction of the model's world, whatever is up: a tower along z from its front, and one along y.
         self.write("z.obj", tall_box(5, 2))
         a, _ = self.draw("--up", "z", "--view", "0,-1,0", "--resolution", 40, inputs=["z.obj"])
         b, _ = self.draw("--up", "y", "--view", "0,0,1", "--resolution", 40, inputs=["t.obj"])
-        self.assertEqual(a[3][30][240:243], b[3][30][240:243])
+        for one, other in zip(a[3][30][240:243], b[3][30][240:243]):
+            self.assertLessEqual(abs(one - other), 12)
+        self.assertGreater(a[3][30][242], a[3][30][240] + 40)  # blue above
 
     def test_colours(self):
         self.write("t.obj", tall_box(2, 1))
@@ -216,7 +218,7 @@ class Fog(CliTest):
         first = self.read("x.png")
         self.ok("render", "f.vdb", "-o", "x.png", "--size", "80x80", "--background", "transparent", "--threads", 1)
         self.assertEqual(self.read("x.png"), first)
-        self.ok("render", "f.vdb", "-o", "y.png", "--size", "80x80", "--background", "transparent", "--density", 0.1)
+        self.ok("render", "f.vdb", "-o", "y.png", "--size", "80x80", "--background", "transparent", "--density", 0.03)
         self.assertLess(picture(self.read("y.png"))[3][38][40 * 4 + 3], 200)
 
     def test_with_iso_it_is_a_surface(self):

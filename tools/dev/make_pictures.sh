@@ -25,7 +25,7 @@ draw_synth() {
     run synth "$kind.vdb" -o "$kind-more.vdb" --size 2x,2x,1x --seed 1
     all+=("$kind.vdb" "$kind-more.vdb")
   done
-  run render "${all[@]}" -o "$pictures/synth.png" --size 480x360 --columns 2 --samples 8 --captions none
+  run render "${all[@]}" -o "$pictures/synth.png" --size 400x300 --columns 2 --samples 8 --captions none
 }
 
 draw_synthesis() {

@@ -36,7 +36,7 @@ draw_synthesis() {
     run synth "$kind.vdb" -o "$kind-more.vdb" --size 2x,2x,1x --seed 1
     all+=("$kind.vdb" "$kind-paper.vdb" "$kind-more.vdb")
   done
-  run render "${all[@]}" -o "$pictures/synthesis.png" --size 340x260 --columns 3 --samples 8 --captions none
+  run render "${all[@]}" -o "$pictures/synthesis.png" --size 290x225 --columns 3 --samples 8 --captions none
 }
 
 draw_analogies() {

@@ -137,10 +137,14 @@ bool encoded(const Encoded& image, std::string& bytes) {
     return good;
 }
 
+png_uint_32 formatOf(const Picture& picture) {
+    return picture.channels == 4 ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;
+}
+
 }  // namespace
 
 void writePng(const std::string& path, const Picture& picture) {
-    writeImage(path, picture.width, picture.height, PNG_FORMAT_RGB, picture.pixels.data());
+    writeImage(path, picture.width, picture.height, formatOf(picture), picture.pixels.data());
 }
 
 std::string encodePng(const Picture& picture) {
@@ -149,7 +153,7 @@ std::string encodePng(const Picture& picture) {
     image.version = PNG_IMAGE_VERSION;
     image.width = png_uint_32(picture.width);
     image.height = png_uint_32(picture.height);
-    image.format = PNG_FORMAT_RGB;
+    image.format = formatOf(picture);
     png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
     std::string bytes(size, '\0');
     if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, picture.pixels.data(), 0, nullptr))

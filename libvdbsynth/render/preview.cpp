@@ -3,13 +3,10 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
-#include "libvdbsynth/base/random.h"
-#include "libvdbsynth/vdb/coord.h"
-#include "libvdbsynth/vdb/wall.h"
-
-#include <openvdb/openvdb.h>
-#include <openvdb/tools/Interpolation.h>
-#include <openvdb/tools/RayIntersector.h>
+#include "libvdbsynth/render/streaks.h"
+#include "libvdbsynth/render/surface_colours.h"
+#include "libvdbsynth/render/traced_surface.h"
+#include "libvdbsynth/render/wires.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,196 +15,230 @@
 namespace vdbsynth {
 namespace {
 
-using Intersector = openvdb::tools::LevelSetRayIntersector<openvdb::FloatGrid>;
-using Ray = Intersector::RayType;
-
-struct Camera {
-    Vec3d eye, forward, right, up;
-    double tangent = 0;  // of half the vertical field of view
-};
-
-Camera aimAt(const Vec3d& low, const Vec3d& high, const PreviewOptions& options) {
-    const Vec3d centre = (low + high) * 0.5;
-    Camera camera;
-    const Vec3d back = normalized(options.view);
-    camera.forward = -back;
-    const Vec3d up = std::abs(back.z) > 0.999 ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
-    camera.right = normalized(cross(camera.forward, up));
-    camera.up = cross(camera.right, camera.forward);
-    camera.tangent = 0.32;
-    // The nearest distance at which every corner of the box is in the picture, with a margin of 4 %.
-    const double aspect = double(options.width) / options.height;
-    double distance = 0;
-    for (int c = 0; c < 8; ++c) {
-        const Vec3d corner =
-            Vec3d{c & 1 ? high.x : low.x, c & 2 ? high.y : low.y, c & 4 ? high.z : low.z} - centre;
-        const double side =
-            std::max(std::abs(dot(corner, camera.right)) / aspect, std::abs(dot(corner, camera.up)));
-        distance = std::max(distance, 1.04 * side / camera.tangent - dot(corner, camera.forward));
-    }
-    camera.eye = centre + back * distance;
-    return camera;
-}
+constexpr std::size_t kRows = 24;  // of the picture that are drawn together
+constexpr Vec3f kInk{0.012f, 0.014f, 0.018f};
 
 struct Hit {
     bool surface = false;
-    Vec3d colour;  // linear light
-    Vec3d normal;
-    double depth = 0;
+    float depth = 0, opacity = 1;
+    Vec3f normal;
+    Vec3f colour;  // of transparent ones times their opacity
 };
 
-// Brightness along lines of a vector field.
-class Streaks {
+Vec3f unit(const Vec3d& v) {
+    return normalized(cast<float>(v));
+}
+
+// The camera among the places of a surface.
+Camera placed(const Camera& camera, const TracedSurface& surface) {
+    Camera here = camera;
+    here.eye = surface.placeHere(camera.eye);
+    here.forward = normalized(surface.directionHere(camera.forward));
+    here.right = normalized(surface.directionHere(camera.right));
+    here.up = normalized(surface.directionHere(camera.up));
+    return here;
+}
+
+// One thread's view of the scene.
+class Tracer {
 public:
-    explicit Streaks(const openvdb::Vec3SGrid& field) : mField(&field), mAccessor(field.getConstAccessor()) {}
-
-    /// 0..1, or negative where the field has no direction.
-    double at(const Vec3d& position) {
-        const openvdb::Vec3d start = mField->worldToIndex(toVec(position));
-        Vec3d first;
-        if (!along(start, first)) return -1;
-        double sum = 0;
-        int count = 0;
-        for (const double way : {1.0, -1.0}) {
-            openvdb::Vec3d p = start;
-            Vec3d heading = first * way;
-            for (int s = 0; s < kSteps; ++s) {
-                sum += noise(p);
-                ++count;
-                p += toVec(heading * kStep);
-                Vec3d next;
-                if (!along(p, next)) break;
-                heading = dot(next, heading) < 0 ? -next : next;
-            }
-        }
-        // The mean of many varies little; rescale it to the whole range.
-        return std::clamp(0.5 + (sum / count - 0.5) * 1.4 * std::sqrt(count * kStep), 0.0, 1.0);
+    // @param floor  height of the ground along the up axis
+    Tracer(const TracedSurface& surface, const PreviewOptions& options, const Camera& camera, float floor)
+        : mSurface(surface),
+          mOptions(options),
+          mCamera(placed(camera, surface)),
+          mEye(cast<float>(mCamera.eye)),
+          mUp(unit(surface.directionHere(upVector(options.up)))),
+          mLighting(surface, mCamera, mUp),
+          mFloor(floor) {
+        if (options.directions) mStreaks.emplace(options.directions);
+        if (options.colours) mColours.emplace(options.colours);
+        mGround = options.ground && dot(mUp, mEye) > mFloor + 1;
     }
 
-private:
-    static constexpr int kSteps = 12;
-    static constexpr double kStep = 0.5;  // [voxels]
-
-    bool along(const openvdb::Vec3d& p, Vec3d& direction) {
-        openvdb::Vec3f value;
-        if (!mAccessor.probeValue(openvdb::Coord::round(p), value)) return false;
-        const openvdb::Vec3d index =
-            mField->worldToIndex(mField->indexToWorld(openvdb::Vec3d(0)) + openvdb::Vec3d(value)) -
-            openvdb::Vec3d(0);
-        direction = fromVec(index);
-        const double size = length(direction);
-        if (!(size > 0)) return false;
-        direction = direction * (1 / size);
-        return true;
-    }
-
-    static double noise(const openvdb::Vec3d& p) {
-        const openvdb::Coord voxel = openvdb::Coord::round(p);
-        const auto part = [](int v) { return std::uint64_t(std::uint32_t(v)) & 0x1fffff; };
-        return Random(1, part(voxel.x()) << 42 | part(voxel.y()) << 21 | part(voxel.z())).uniform();
-    }
-
-    const openvdb::Vec3SGrid* mField;
-    openvdb::Vec3SGrid::ConstAccessor mAccessor;
-};
-
-class Scene {
-public:
-    Scene(const openvdb::FloatGrid& grid, const Camera& camera, double voxel,
-          const openvdb::Vec3SGrid* directions)
-        : mIntersector(grid),
-          mCamera(camera),
-          mVoxel(voxel),
-          mLight(normalized(camera.right * -0.55 + camera.up * 0.75 - camera.forward * 0.6)) {
-        if (directions) mStreaks.emplace(*directions);
-    }
-
-    Hit trace(double u, double v) {
+    // x and y from 0 to 1, from the left and top.
+    Hit trace(double x, double y) {
         Hit hit;
-        const Vec3d direction = normalized(mCamera.forward + mCamera.right * u + mCamera.up * v);
-        openvdb::Vec3d position, normal;
-        double time = 0;
-        const Ray ray(toVec(mCamera.eye), toVec(direction));
-        if (!mIntersector.intersectsWS(ray, position, normal, time)) {
-            const double t = std::clamp(0.5 + v / (2 * mCamera.tangent), 0.0, 1.0);
-            hit.colour = Vec3d{0.80, 0.83, 0.87} * (1 - t) + Vec3d{0.95, 0.96, 0.97} * t;
+        const Vec3f direction = unit(mCamera.through(x, y));
+        if (mSurface.meets(mEye, direction, hit.depth)) {
+            hit.surface = true;
+            const Vec3f place = mEye + direction * hit.depth;
+            hit.normal = mSurface.normalAt(place);
+            if (dot(hit.normal, direction) > 0) hit.normal = -hit.normal;
+            hit.colour = mLighting.shaded(place, hit.normal, -direction, albedoAt(place));
             return hit;
         }
-        hit.surface = true;
-        hit.normal = normalized(fromVec(normal));
-        if (dot(hit.normal, direction) > 0) hit.normal = -hit.normal;
-        hit.depth = time;
-        hit.colour = shade(fromVec(position), hit.normal, direction);
+        hit.colour = mOptions.background.at(float(1 - y));
+        const bool clear = mOptions.background.kind == Background::Kind::Transparent;
+        if (clear) hit.opacity = 0;
+        const float falling = -dot(direction, mUp);
+        if (!mGround || falling <= 0.01f) return hit;
+        const float way = (dot(mEye, mUp) - mFloor) / falling;
+        const Vec3f light = mLighting.onGround(mEye + direction * way);
+        if (clear)
+            hit.opacity = 1 - (light.x + light.y + light.z) / 3;
+        else
+            hit.colour = {hit.colour.x * light.x, hit.colour.y * light.y, hit.colour.z * light.z};
         return hit;
     }
 
-private:
-    Vec3d shade(const Vec3d& position, const Vec3d& normal, const Vec3d& direction) {
-        const double facing = dot(normal, mLight);
-        double key = 0;
-        if (facing > 0) {
-            openvdb::Vec3d point;
-            const Ray shadow(toVec(position + normal * (1.5 * mVoxel)), toVec(mLight), 0.1 * mVoxel);
-            key = mIntersector.intersectsWS(shadow, point) ? 0 : facing;
-        }
-        const double sky = 0.5 + 0.5 * dot(normal, mCamera.up);
-        const double rim = std::max(0.0, 1 + dot(normal, direction));
-        Vec3d albedo{0.80, 0.62, 0.46};
-        const double streak = mStreaks ? mStreaks->at(position) : -1;
-        if (streak >= 0) albedo = Vec3d{0.10, 0.16, 0.36} * (1 - streak) + Vec3d{0.92, 0.88, 0.80} * streak;
-        const Vec3d light = Vec3d{1.0, 0.96, 0.90} * (0.95 * key) + Vec3d{0.30, 0.36, 0.45} * (0.75 * sky) +
-                            Vec3d{0.16, 0.13, 0.11} + Vec3d{0.10, 0.11, 0.13} * (rim * rim);
-        return {albedo.x * light.x, albedo.y * light.y, albedo.z * light.z};
+    // Without shading.
+    float depthAt(double x, double y) const {
+        float along = 0;
+        const Vec3f direction = unit(mCamera.through(x, y));
+        return mSurface.meets(mEye, direction, along) ? along * dot(direction, unit(mCamera.forward)) : 1e30f;
     }
 
-    Intersector mIntersector;
+private:
+    Vec3f albedoAt(const Vec3f& place) {
+        if (!mStreaks && !mColours) return kClay;
+        const Vec3d world = transformed(mSurface.toWorld(), cast<double>(place));
+        if (mStreaks) {
+            const float streak = float(mStreaks->at(world));
+            return streak < 0
+                       ? kClay
+                       : Vec3f{0.07f, 0.11f, 0.25f} * (1 - streak) + Vec3f{0.70f, 0.66f, 0.60f} * streak;
+        }
+        Vec3f colour;
+        if (!mColours->at(world, colour)) return kClay;
+        return Vec3f{lightOf(colour.x), lightOf(colour.y), lightOf(colour.z)} * 0.92f;
+    }
+
+    const TracedSurface& mSurface;
+    const PreviewOptions& mOptions;
     Camera mCamera;
-    double mVoxel;
-    Vec3d mLight;
+    Vec3f mEye, mUp;
+    Lighting mLighting;
     std::optional<Streaks> mStreaks;
+    std::optional<SurfaceColours> mColours;
+    float mFloor = 0;
+    bool mGround = false;
 };
 
-const openvdb::Vec3SGrid* vectorsOf(const GridConstPtr& grid) {
-    if (!grid) return nullptr;
-    if (!grid->isType<openvdb::Vec3SGrid>())
-        throw Error(ErrorCode::BadData, "`directions`: grid " + grid->getName() + " holds " +
-                                            grid->valueType() + "; vectors of floats are needed");
-    return static_cast<const openvdb::Vec3SGrid*>(grid.get());
-}
+// Some rows of the picture, with the row before and the one after.
+struct Strip {
+    int width, first, rows;
+    std::vector<Hit> hits;
 
-// Gamma 2 for 2.2: a square root has the same bits on every processor.
-std::uint8_t encode(double light) {
-    return std::uint8_t(std::clamp(std::sqrt(std::max(0.0, light)), 0.0, 1.0) * 255 + 0.5);
-}
+    const Hit& at(int x, int y) const {
+        return hits[std::size_t(y - first) * std::size_t(width) + std::size_t(x)];
+    }
+    bool holds(int x, int y) const { return x >= 0 && x < width && y >= first && y < first + rows; }
+};
 
-bool isEdge(const std::vector<Hit>& hits, int width, int height, int x, int y) {
-    const Hit& here = hits[std::size_t(y) * std::size_t(width) + std::size_t(x)];
+bool isEdge(const Strip& strip, int x, int y) {
+    const Hit& here = strip.at(x, y);
     for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx) {
-            const int nx = x + dx, ny = y + dy;
-            if (nx < 0 || ny < 0 || nx >= width || ny >= height) continue;
-            const Hit& there = hits[std::size_t(ny) * std::size_t(width) + std::size_t(nx)];
+            if (!strip.holds(x + dx, y + dy)) continue;
+            const Hit& there = strip.at(x + dx, y + dy);
             if (here.surface != there.surface) return true;
             if (!here.surface) continue;
-            if (dot(here.normal, there.normal) < 0.9 ||
-                std::abs(here.depth - there.depth) > 0.02 * here.depth)
+            if (dot(here.normal, there.normal) < 0.88f ||
+                std::abs(here.depth - there.depth) > 0.02f * here.depth)
                 return true;
-            const Vec3d change = here.colour - there.colour;
-            if (dot(change, change) > 0.01) return true;
+            const Vec3f change = here.colour - there.colour;
+            if (dot(change, change) > 0.012f) return true;
         }
     return false;
 }
 
-void requireSize(int width, int height) {
+class LevelSetDrawing final : public Drawing {
+public:
+    LevelSetDrawing(const openvdb::FloatGrid& grid, const PreviewOptions& options, const RunContext& ctx)
+        : mOptions(options), mSurface(grid, ctx), mOutline(mSurface.outline()) {
+        mFloor = float(mSurface.lowest(normalized(mSurface.directionHere(upVector(options.up)))));
+    }
+
+    const std::vector<Vec3d>& outline() const override { return mOutline; }
+
+    Picture drawn(const Camera& camera, const RunContext& ctx) const override {
+        const int width = mOptions.width, height = mOptions.height;
+        const int channels = mOptions.background.kind == Background::Kind::Transparent ? 4 : 3;
+        Picture picture{width, height, {}, channels};
+        picture.pixels.resize(std::size_t(width) * std::size_t(height) * std::size_t(channels));
+        const std::vector<float> wires = wiresOf(camera, ctx);
+        Stage stage(ctx, "rendering", 1);
+        parallelFor(ctx, std::size_t(height), kRows, [&](std::size_t begin, std::size_t end) {
+            Tracer tracer(mSurface, mOptions, camera, mFloor);
+            drawRows(tracer, int(begin), int(end), wires, picture);
+        });
+        stage.advance();
+        return picture;
+    }
+
+private:
+    std::vector<float> wiresOf(const Camera& camera, const RunContext& ctx) const {
+        if (!mOptions.wires) return {};
+        const int width = mOptions.width, height = mOptions.height;
+        std::vector<float> depths(std::size_t(width) * std::size_t(height));
+        const float voxel = float(1 / length(mSurface.directionHere(Vec3d{1, 0, 0})));
+        parallelFor(ctx, std::size_t(height), kRows, [&](std::size_t begin, std::size_t end) {
+            const Tracer tracer(mSurface, mOptions, camera, mFloor);
+            for (std::size_t y = begin; y < end; ++y)
+                for (std::size_t x = 0; x < std::size_t(width); ++x)
+                    depths[y * std::size_t(width) + x] =
+                        voxel * tracer.depthAt((double(x) + 0.5) / width, (double(y) + 0.5) / height);
+        });
+        return wireCoverage(*mOptions.wires, camera, width, height, depths, 1.5 * double(voxel));
+    }
+
+    void drawRows(Tracer& tracer, int begin, int end, const std::vector<float>& wires,
+                  Picture& picture) const {
+        const int width = mOptions.width, height = mOptions.height;
+        Strip strip{width, std::max(0, begin - 1), 0, {}};
+        strip.rows = std::min(height, end + 1) - strip.first;
+        strip.hits.reserve(std::size_t(width) * std::size_t(strip.rows));
+        for (int y = strip.first; y < strip.first + strip.rows; ++y)
+            for (int x = 0; x < width; ++x)
+                strip.hits.push_back(tracer.trace((x + 0.5) / width, (y + 0.5) / height));
+        for (int y = begin; y < end; ++y)
+            for (int x = 0; x < width; ++x) {
+                Vec3f colour = strip.at(x, y).colour;
+                float opacity = strip.at(x, y).opacity;
+                if (mOptions.samples > 1 && isEdge(strip, x, y)) {
+                    // Places that fill a square evenly, whatever their number [roberts2018].
+                    double u = 0.5, v = 0.5;
+                    for (int s = 1; s < mOptions.samples; ++s) {
+                        u += 0.7548776662466927;
+                        v += 0.5698402909980532;
+                        u -= std::floor(u);
+                        v -= std::floor(v);
+                        const Hit hit = tracer.trace((x + u) / width, (y + v) / height);
+                        colour = colour + hit.colour;
+                        opacity += hit.opacity;
+                    }
+                    colour = colour * (1.f / float(mOptions.samples));
+                    opacity /= float(mOptions.samples);
+                }
+                const std::size_t pixel = std::size_t(y) * std::size_t(width) + std::size_t(x);
+                if (!wires.empty())
+                    colour = colour * (1 - 0.8f * wires[pixel]) + kInk * (0.8f * wires[pixel]);
+                std::uint8_t* out = &picture.pixels[pixel * std::size_t(picture.channels)];
+                const float share = picture.channels == 4 ? 1 / std::max(opacity, 1e-4f) : 1;
+                out[0] = shownByte(colour.x * share);
+                out[1] = shownByte(colour.y * share);
+                out[2] = shownByte(colour.z * share);
+                if (picture.channels == 4) out[3] = std::uint8_t(std::clamp(opacity, 0.f, 1.f) * 255 + 0.5f);
+            }
+    }
+
+    PreviewOptions mOptions;
+    TracedSurface mSurface;
+    std::vector<Vec3d> mOutline;
+    float mFloor = 0;
+};
+
+}  // namespace
+
+void requirePictureSize(int width, int height) {
     requireOption(width >= 16 && height >= 16 && width <= 8192 && height <= 8192, "width",
                   std::to_string(width) + ", height " + std::to_string(height),
                   "from 16 to 8192 pixels each");
 }
 
-}  // namespace
-
 void validate(const PreviewOptions& options) {
-    requireSize(options.width, options.height);
+    requirePictureSize(options.width, options.height);
     const double squared = dot(options.view, options.view);
     requireOption(squared > 0 && std::isfinite(squared), "view",
                   roundedText(options.view.x, 6) + "," + roundedText(options.view.y, 6) + "," +
@@ -215,110 +246,25 @@ void validate(const PreviewOptions& options) {
                   "a direction");
     requireOption(options.samples >= 1 && options.samples <= 64, "samples", std::to_string(options.samples),
                   "from 1 to 64");
-    vectorsOf(options.directions);
+    requireOption(options.density > 0 && options.density <= 1e6, "density", roundedText(options.density, 6),
+                  "above 0, at most 1000000");
+    if (options.directions) Streaks(options.directions);
+    if (options.colours) SurfaceColours(options.colours);
 }
 
-void validate(const SliceOptions& options, const IndexBox& box) {
-    requireSize(options.width, options.height);
-    requireOption(options.axis >= 0 && options.axis <= 2, "axis", std::to_string(options.axis),
-                  "0, 1 or 2 for x, y or z");
-    requireOption(options.fraction >= 0 && options.fraction <= 1, "fraction",
-                  roundedText(options.fraction, 6), "from 0 to 1");
-    requireBox(box, "box");
+std::unique_ptr<Drawing> drawingOf(const openvdb::FloatGrid& grid, const PreviewOptions& options,
+                                   const RunContext& ctx) {
+    validate(options);
+    return withThreads(ctx, [&]() -> std::unique_ptr<Drawing> {
+        return std::make_unique<LevelSetDrawing>(grid, options, ctx);
+    });
 }
 
 Picture renderPreview(const openvdb::FloatGrid& grid, const PreviewOptions& options, const RunContext& ctx) {
-    validate(options);
-    const openvdb::Vec3SGrid* directions = vectorsOf(options.directions);
-    const IndexBox box = solidBox(grid, "the model");
-    // The corners of the solid's box in world space; a rotated grid gives the box around them.
-    Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-    for (int c = 0; c < 8; ++c) {
-        const Vec3d corner{c & 1 ? box.max.x + 0.5 : box.min.x - 0.5,
-                           c & 2 ? box.max.y + 0.5 : box.min.y - 0.5,
-                           c & 4 ? box.max.z + 0.5 : box.min.z - 0.5};
-        const Vec3d world = fromVec(grid.indexToWorld(toVec(corner)));
-        for (int axis = 0; axis < 3; ++axis) {
-            low[axis] = std::min(low[axis], world[axis]);
-            high[axis] = std::max(high[axis], world[axis]);
-        }
-    }
-    const Camera camera = aimAt(low, high, options);
-    const int width = options.width, height = options.height;
-    std::vector<Hit> hits(std::size_t(width) * std::size_t(height));
-    Picture picture{width, height, std::vector<std::uint8_t>(hits.size() * 3)};
-    const auto toPlane = [&](double px, double py, double& u, double& v) {
-        u = (2 * px / width - 1) * camera.tangent * width / height;
-        v = (1 - 2 * py / height) * camera.tangent;
-    };
-    Stage stage(ctx, "rendering", 2);
-    behindWall(ErrorCode::Unusable, "the model cannot be rendered", [&] {
-        const Scene scene(grid, camera, voxelSizeOf(grid), directions);
-        parallelFor(ctx, std::size_t(height), 4, [&](std::size_t begin, std::size_t end) {
-            Scene mine = scene;
-            for (int y = int(begin); y < int(end); ++y)
-                for (int x = 0; x < width; ++x) {
-                    double u, v;
-                    toPlane(x + 0.5, y + 0.5, u, v);
-                    hits[std::size_t(y) * std::size_t(width) + std::size_t(x)] = mine.trace(u, v);
-                }
-        });
-        stage.advance();
-        parallelFor(ctx, std::size_t(height), 4, [&](std::size_t begin, std::size_t end) {
-            Scene mine = scene;
-            for (int y = int(begin); y < int(end); ++y)
-                for (int x = 0; x < width; ++x) {
-                    const std::size_t pixel = std::size_t(y) * std::size_t(width) + std::size_t(x);
-                    Vec3d colour = hits[pixel].colour;
-                    if (options.samples > 1 && isEdge(hits, width, height, x, y)) {
-                        Random random(0, pixel);
-                        for (int s = 1; s < options.samples; ++s) {
-                            double u, v;
-                            toPlane(x + random.uniform(), y + random.uniform(), u, v);
-                            colour = colour + mine.trace(u, v).colour;
-                        }
-                        colour = colour * (1.0 / options.samples);
-                    }
-                    for (int c = 0; c < 3; ++c)
-                        picture.pixels[pixel * 3 + std::size_t(c)] = encode(colour[c]);
-                }
-        });
-    });
-    stage.advance();
-    return picture;
-}
-
-Picture renderSlice(const openvdb::FloatGrid& grid, const IndexBox& box, const SliceOptions& options,
-                    const RunContext& ctx) {
-    validate(options, box);
-    const int axis = options.axis, across = axis == 0 ? 1 : 0, up = axis == 2 ? 1 : 2;
-    const double slice = box.min[axis] + options.fraction * (box.max[axis] - box.min[axis]);
-    const double scale =
-        std::max(double(box.size()[across]) / options.width, double(box.size()[up]) / options.height) *
-        1.04;  // voxels per pixel
-    const double voxel = voxelSizeOf(grid);
-    Picture picture{options.width, options.height,
-                    std::vector<std::uint8_t>(std::size_t(options.width) * std::size_t(options.height) * 3)};
-    parallelFor(ctx, std::size_t(options.height), 8, [&](std::size_t begin, std::size_t end) {
-        const auto accessor = grid.getConstAccessor();
-        for (int y = int(begin); y < int(end); ++y)
-            for (int x = 0; x < options.width; ++x) {
-                Vec3d p;
-                p[axis] = slice;
-                p[across] =
-                    0.5 * (box.min[across] + box.max[across]) + (x + 0.5 - 0.5 * options.width) * scale;
-                p[up] = 0.5 * (box.min[up] + box.max[up]) - (y + 0.5 - 0.5 * options.height) * scale;
-                const double value = double(openvdb::tools::BoxSampler::sample(accessor, toVec(p))) / voxel;
-                const double line = std::abs(value - std::floor(value + 0.5)) / std::max(scale, 1e-9);
-                Vec3d colour = value < 0 ? Vec3d{0.85, 0.55, 0.30} : Vec3d{0.55, 0.68, 0.85};
-                colour = colour * (1 - 0.12 * std::min(std::abs(value), 3.0));
-                if (line < 0.7 && std::abs(value) < 2.9) colour = colour * 0.85;
-                if (std::abs(value) / scale < 1.0) colour = Vec3d{0, 0, 0};
-                const std::size_t pixel = std::size_t(y) * std::size_t(options.width) + std::size_t(x);
-                for (int c = 0; c < 3; ++c) picture.pixels[pixel * 3 + std::size_t(c)] = encode(colour[c]);
-            }
-    });
-    return picture;
+    const std::unique_ptr<Drawing> drawing = drawingOf(grid, options, ctx);
+    const Framing framing =
+        framed(drawing->outline(), {options.view}, options.up, double(options.width) / options.height);
+    return withThreads(ctx, [&] { return drawing->drawn(framing.cameras.front(), ctx); });
 }
 
 }  // namespace vdbsynth

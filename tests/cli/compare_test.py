@@ -177,7 +177,7 @@ class Page(CliTest):
         page = self.read("page.html").decode()
         self.assertEqual(re.findall(r"(?:src|href)=\"(?!data:)[^\"]*", page), [])
         address = "file://" + self.path("page.html")
-        words = [browser, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--enable-logging=stderr",
+        words = [browser, "--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage", "--enable-logging=stderr",
                  f"--user-data-dir={self.path('profile')}"]
         environment = {**os.environ, "HOME": self.folder}
         result = subprocess.run([*words, "--dump-dom", address], capture_output=True, text=True, timeout=120, env=environment)

@@ -42,7 +42,7 @@ class BadOptions(CliTest):
             ("--slice q=1", ["render", "g.vdb", "-o", "x.png", "--slice", "q=1"]),
             ("--size 9x9", ["render", "g.vdb", "-o", "x.png", "--size", "9x9"]),
             ("--directions: cannot be combined with --slice", ["render", "g.vdb", "-o", "x.png", "--directions", "g.vdb", "--slice", "z=0.5"]),
-            ("x.jpg: unknown extension; must be a .png file", ["render", "g.vdb", "-o", "x.jpg"]),
+            ("x.jpg: unknown extension; must be a .png, .html or .htm file", ["render", "g.vdb", "-o", "x.jpg"]),
             ("--at: missing", ["match", "g.vdb", "g.vdb"]),
             ("mask blob: unknown kind", ["mask", "blob", "-o", "x.vdb"]),
             ("--box: missing", ["crop", "g.vdb", "-o", "x.vdb"]),

@@ -22,6 +22,7 @@
 #include "libvdbsynth/pipeline/repeat/repeat.h"
 #include "libvdbsynth/pipeline/synth/synth.h"
 #include "libvdbsynth/render/preview.h"
+#include "libvdbsynth/render/slice.h"
 #include "libvdbsynth/synth/block_synthesis.h"
 #include "libvdbsynth/vdb/mask.h"
 #include "libvdbsynth/vdb/vdb_file.h"

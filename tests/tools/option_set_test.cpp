@@ -84,7 +84,8 @@ TEST_CASE("Arguments: a reader gives what was given, else the default, else noth
     CHECK(given.wide("seed") == 7);
     CHECK(given.box("exemplar-box").max.z == 3);
     CHECK(parseArguments("render", {}).pixels("size") == std::array<int, 2>{800, 600});
-    CHECK(parseArguments("render", {}).triple("view") == std::array<double, 3>{1, -1.6, 0.9});
+    CHECK(parseArguments("render", {"--view", "1,-1.6,0.9"}).triple("view") ==
+          std::array<double, 3>{1, -1.6, 0.9});
     CHECK(parseArguments("render", {"--slice", "x=0.25"}).slice("slice").axis == 0);
     CHECK(parseArguments("convert", {"--max-memory", "2M"}).wide("max-memory") == 2000000);
     CHECK(parseArguments("mask", {"--range", "-1,0.5"}).range("range") == std::pair<double, double>(-1, 0.5));

@@ -4,6 +4,8 @@
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/pipeline/compare/compare.h"
 #include "libvdbsynth/render/preview.h"
+#include "libvdbsynth/render/slice.h"
+#include "libvdbsynth/render/surface_colours.h"
 #include "tools/vdb_synth/compare_report.h"
 
 #include <nlohmann/json.hpp>
@@ -18,6 +20,9 @@ CompareInput inputOf(Run& run, const std::string& path, const LevelSet& model) {
     return input;
 }
 
+// Of each model: a page of several stays within some megabytes.
+constexpr std::size_t kViewerTriangles = 120000;
+
 void writePage(Run& run, const Comparison& comparison, const std::vector<const LevelSet*>& models) {
     std::vector<ModelPictures> pictures;
     for (const LevelSet* model : models) {
@@ -27,8 +32,13 @@ void writePage(Run& run, const Comparison& comparison, const std::vector<const L
         SliceOptions slice;
         slice.width = 480;
         slice.height = 400;
+        PageModel viewer;
+        viewer.mesh =
+            packedMesh(*model->grid, colourGridOf(model->attributes), kViewerTriangles, run.context);
+        viewer.view = shaded.view;
+        shaded.colours = colourGridOf(model->attributes);
         pictures.push_back({renderPreview(*model->grid, shaded, run.context),
-                            renderSlice(*model->grid, model->domain, slice, run.context)});
+                            renderSlice(*model->grid, model->domain, slice, run.context), std::move(viewer)});
     }
     run.write(run.arguments.text("page"), comparisonPage(comparison, pictures));
 }

@@ -1,5 +1,5 @@
-// A comparison as one page: pictures, verdicts, curves. The page is self-contained; its script only shows a
-// curve's value under the pointer.
+// A comparison as one page: models to turn, slices, verdicts, curves. The page is self-contained; its script
+// turns the models (view_page.h) and shows a curve's value under the pointer.
 #include "tools/vdb_synth/compare_report.h"
 #include "tools/vdb_synth/html_text.h"
 
@@ -24,7 +24,8 @@ th { font-weight: 600; color: #55606a } .pass { color: #17693b } .far { color: #
 .models, .curves { display: grid; grid-template-columns: repeat(auto-fill, minmax(320px, 1fr)); gap: 1em }
 figure { margin: 0 } img, svg { width: 100%; height: auto; border: 1px solid #dfe4e8; background: #fff } figcaption { color: #55606a; font-size: .9em }
 .verdict { font-size: 1.2em; padding: .5em .8em; background: #f2f5f7; display: inline-block }
-</style>)";
+figure.viewer canvas { width: 100%; aspect-ratio: 6 / 5 }
+)";
 
 const char* kScript = R"(<script>
 for (const svg of document.querySelectorAll("svg[data-curves]")) {
@@ -222,13 +223,14 @@ std::string modelFigures(const Comparison& comparison, const std::vector<ModelPi
         const ModelStatistics& model = m == 0 ? comparison.reference : comparison.others[m - 1];
         const std::string name = (m == 0 ? "Reference " : "") + model.name;
         const Index3 size = model.domain.size();
-        html += "<figure>" + image(pictures[m].shaded, name) + image(pictures[m].slice, "slice of " + name) +
+        html += viewerFigure(pictures[m].viewer, image(pictures[m].shaded, name)) +
+                image(pictures[m].slice, "slice of " + name) +
                 "<figcaption><span style=\"color:" + kColours[m % std::size(kColours)] +
                 "\">&#9632;</span> " + htmlText(name) + ", " + std::to_string(size.x) + " x " +
                 std::to_string(size.y) + " x " + std::to_string(size.z) + " voxels of " +
                 shortNumber(model.voxelSize) + "</figcaption></figure>\n";
     }
-    return html + "</div>\n";
+    return html + "</div>\n" + kViewerBar;
 }
 
 std::string otherSection(const Comparison& comparison, std::size_t i) {
@@ -249,13 +251,14 @@ std::string otherSection(const Comparison& comparison, std::size_t i) {
 std::string comparisonPage(const Comparison& comparison, const std::vector<ModelPictures>& pictures) {
     std::string title = comparison.reference.name + " and";
     for (const ModelStatistics& other : comparison.others) title += " " + other.name;
-    std::string html = kHead + std::string("<title>") + htmlText(title) + "</title></head><body>\n<h1>" +
-                       htmlText(title) + "</h1>\n" + modelFigures(comparison, pictures);
+    std::string html = kHead + std::string(kViewerStyle) + "</style><title>" + htmlText(title) +
+                       "</title></head><body>\n<h1>" + htmlText(title) + "</h1>\n" +
+                       modelFigures(comparison, pictures);
     for (std::size_t i = 0; i < comparison.others.size(); ++i) html += otherSection(comparison, i);
     html += yardstickTable(comparison) + "<h2>Curves</h2>\n<div class=\"curves\">";
     for (std::size_t s = 0; s < comparison.reference.statistics.size(); ++s)
         if (comparison.reference.statistics[s].curve) html += charts(comparison, s);
-    return html + "</div>\n" + kScript + "\n</body></html>\n";
+    return html + "</div>\n" + kViewerScript + kScript + "\n</body></html>\n";
 }
 
 }  // namespace vdbsynth::cli

@@ -1,6 +1,7 @@
 #pragma once
 #include "libvdbsynth/io/png_file.h"
 #include "libvdbsynth/pipeline/compare/compare.h"
+#include "tools/vdb_synth/view_page.h"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -17,6 +18,7 @@ nlohmann::ordered_json comparisonJson(const Comparison& comparison);
 
 struct ModelPictures {
     Picture shaded, slice;
+    PageModel viewer;  ///< `shaded` stands where the browser has no WebGL
 };
 
 /// A comparison as one self-contained HTML page. @param pictures  reference first

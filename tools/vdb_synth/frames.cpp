@@ -81,7 +81,9 @@ void checkFrames(const Arguments& arguments, bool inputsAreOutputs) {
             const bool names = namesFrames(path);
             any = any || names;
             // A file may be called so; one that is written might be as well, but hardly on purpose.
-            if (!given && names && written && path.find("##") != std::string::npos)
+            // A turntable fills them in itself.
+            if (!given && names && written && !arguments.has("turntable") &&
+                path.find("##") != std::string::npos)
                 throw Error(ErrorCode::InvalidOption,
                             option + path + ": #### stands for the number of a frame; add --frames 1-20");
             if (frames.size() > 1 && !names && written)
@@ -90,6 +92,8 @@ void checkFrames(const Arguments& arguments, bool inputsAreOutputs) {
                                 ": every frame would replace it; write #### where the "
                                 "frame's number is to stand");
         });
+    if (given && arguments.has("turntable"))
+        throw Error(ErrorCode::InvalidOption, "--turntable and --frames: give one of them");
     if (given && !any)
         throw Error(ErrorCode::InvalidOption,
                     "--frames: no file names frames; write #### where a frame's number stands, as in "

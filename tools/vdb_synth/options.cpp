@@ -80,9 +80,9 @@ std::string flagOf(const std::string& field, const std::string& command) {
 const std::vector<Option>& allOptions() {
     static const std::vector<Option> all = [] {
         std::vector<Option> table;
-        for (const auto& part :
-             {methodOptionTable(), textureOptionTable(), patchOptionTable(), reliefOptionTable(),
-              reliefExtractOptionTable(), modelOptionTable(), batchOptionTable(), runningOptionTable()})
+        for (const auto& part : {methodOptionTable(), textureOptionTable(), patchOptionTable(),
+                                 reliefOptionTable(), reliefExtractOptionTable(), renderOptionTable(),
+                                 modelOptionTable(), batchOptionTable(), runningOptionTable()})
             table.insert(table.end(), part.begin(), part.end());
         return table;
     }();

@@ -36,6 +36,7 @@ std::vector<Option> textureOptionTable();
 std::vector<Option> patchOptionTable();
 std::vector<Option> reliefOptionTable();
 std::vector<Option> reliefExtractOptionTable();
+std::vector<Option> renderOptionTable();
 std::vector<Option> batchOptionTable();
 std::vector<Option> runningOptionTable();
 

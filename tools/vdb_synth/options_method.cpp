@@ -16,13 +16,6 @@ std::vector<Option> resultTable() {
             .says("size of the domain, each side")
             .otherwiseIs("a cube of --resolution, lower for flat kinds")
             .takenBy({"make"}),
-        option(Kind::Pixels, "size", "WxH")
-            .from(16, 8192)
-            .measuredIn(Unit::Pixels)
-            .says("size of the picture, each side")
-            .initially("800x600")
-            .sets({"size", "width"})
-            .takenBy({"render"}),
         real("feature", "F", 4, 256)
             .measuredIn(Unit::Voxels)
             .says("size of a typical feature")
@@ -54,19 +47,6 @@ std::vector<Option> resultTable() {
             .sets({"range", "minimum", "maximum"})
             .says("for range: active voxels of --grid with a value from LOW to HIGH")
             .takenBy({"mask"}),
-        option(Kind::Triple, "view", "X,Y,Z")
-            .says("direction from the model to the camera")
-            .initially("1,-1.6,0.9")
-            .takenBy({"render"}),
-        option(Kind::Slice, "slice", "z=0.5")
-            .sets({"slice", "axis", "fraction"})
-            .says("draw a slice across an axis, at a fraction of the domain, instead of a shaded picture")
-            .takenBy({"render"}),
-        whole("samples", "N", 1, 64).says("rays per pixel at edges").initially("4").takenBy({"render"}),
-        option(Kind::Grid, "directions", "FILE.vdb[:GRID]")
-            .says("draw a direction field, such as analogy --write-directions writes, as streaks on the "
-                  "surface")
-            .takenBy({"render"}),
     };
 }
 

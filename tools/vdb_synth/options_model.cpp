@@ -198,7 +198,6 @@ std::vector<Option> outputTable() {
             .repeatable()
             .takenBy({"texture"}),
         output("output", "FILE.vdb", {"vdb"}).shortly('o').says("mask to write").takenBy({"mask"}),
-        output("output", "FILE.png", {"png"}).shortly('o').says("picture to write").takenBy({"render"}),
         output("output", "FILE.json", {"json"})
             .shortly('o')
             .says("write the answer as JSON to this file, and nothing to standard output")

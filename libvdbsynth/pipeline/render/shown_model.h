@@ -1,0 +1,30 @@
+#pragma once
+#include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/render/camera.h"
+#include "libvdbsynth/vdb/level_set.h"
+
+#include <string>
+#include <vector>
+
+namespace vdbsynth {
+
+/// A file's fog volume with its other grids.
+struct ShownFog {
+    FloatGridPtr density;  ///< null: the file is no VDB, or the grid that a model is made of is no fog
+    std::string name;      ///< of the grid
+    std::vector<GridPtr> others;
+};
+
+/// The fog volume of a VDB file, or nothing. @param gridName  as VdbReadOptions' (vdb/vdb_file.h)
+/// @throw Error as readVdbModel
+ShownFog readFog(const std::string& path, const std::string& gridName, const RunContext& ctx = {});
+
+/// The grid of a model's colours. @param name  of a grid; "none": no colours; empty: the usual ones
+/// (render/surface_colours.h) @param path  begins the message
+/// @throw Error BadData (there is no grid of that name)
+GridPtr shownColours(const std::vector<GridPtr>& grids, const std::string& name, const std::string& path);
+
+/// The up axis that a kind of file has by custom: y for .obj, .gltf and .glb, z for all others.
+UpAxis customaryUp(const std::string& path);
+
+}  // namespace vdbsynth

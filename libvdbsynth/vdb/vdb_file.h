@@ -1,5 +1,6 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/math/affine.h"
 #include "libvdbsynth/vdb/level_set.h"
 
 #include <cstdint>
@@ -16,6 +17,7 @@ struct GridSummary {
     std::string type, gridClass;
     Vec3d voxelSize;
     bool linear = true, halfPrecision = false;
+    Affine transform = kIdentity;  ///< from index space to the world; only where linear
     std::uint64_t activeVoxels = 0;
     IndexBox activeBox;
     bool isFloat = false;

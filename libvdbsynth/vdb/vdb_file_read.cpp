@@ -222,6 +222,11 @@ std::vector<GridSummary> summarizeGrids(const std::vector<GridPtr>& grids) {
         summary.gridClass = openvdb::GridBase::gridClassToString(grid->getGridClass());
         summary.voxelSize = fromVec(grid->voxelSize());
         summary.linear = grid->transform().isLinear();
+        if (summary.linear) {
+            const openvdb::Mat4R matrix = grid->transform().baseMap()->getAffineMap()->getMat4();
+            // OpenVDB multiplies rows from the left, so its rows are our columns.
+            for (int i = 0; i < 16; ++i) summary.transform[std::size_t(i)] = matrix(i / 4, i % 4);
+        }
         summary.halfPrecision = grid->saveFloatAsHalf();
         summary.activeVoxels = grid->activeVoxelCount();
         summary.activeBox = fromBBox(grid->evalActiveVoxelBoundingBox());

@@ -9,6 +9,12 @@ struct Words<OpenMesh> {
                                                                 {"shell", OpenMesh::Shell}};
 };
 template <>
+struct Words<ThinParts> {
+    static constexpr const char* kType = "Literal['scale', 'keep', 'as-is']";
+    static constexpr std::pair<const char*, ThinParts> kAll[] = {
+        {"scale", ThinParts::Scale}, {"keep", ThinParts::Keep}, {"as-is", ThinParts::AsIs}};
+};
+template <>
 struct Words<PatchMethod> {
     static constexpr const char* kType = "Literal['default', 'paper']";
     static constexpr std::pair<const char*, PatchMethod> kAll[] = {{"default", PatchMethod::Default},
@@ -306,6 +312,10 @@ void describe(Keywords& keywords, AnalogyOptions& options) {
     keywords.add("strength", options.strength, "0 to 1: blend from the target to the result");
     keywords.add("mask", options.mask,
                  "0 to 1 over the target, by which strength is multiplied; of a level set its inside");
+    keywords.add(
+        "thin", options.thin,
+        "where the target is thinner than the texture is deep: scale its depth, keep such parts, or as-is");
+    keywords.add("draft", options.draft, "a quick look: searched at half the resolution");
     keywords.add("halfWidth", options.halfWidth, "[voxels] of the result, 1.5 to 100");
     keywords.add("keepDirections", options.keepDirections, "fills the result's directions");
 }

@@ -45,6 +45,23 @@ test::Thrown reading(const std::string& path, const VdbReadOptions& options = {}
 
 }  // namespace
 
+TEST_CASE("summarizeGrids: a grid's transform takes index space to the world", "[vdb]") {
+    openvdb::initialize();
+    const auto grid = openvdb::FloatGrid::create(1.f);
+    openvdb::Mat4R matrix = openvdb::Mat4R::identity();
+    matrix.preScale(openvdb::Vec3d(0.5, 0.5, 0.5));
+    matrix.postRotate(openvdb::math::Z_AXIS, 0.3);
+    matrix.postTranslate(openvdb::Vec3d(1, 2, 3));
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(matrix));
+    const std::vector<GridSummary> summaries = summarizeGrids({grid});
+    REQUIRE(summaries.size() == 1);
+    const openvdb::Vec3d world = grid->indexToWorld(openvdb::Vec3d(4, -7, 9));
+    const Vec3d ours = transformed(summaries[0].transform, {4, -7, 9});
+    CHECK(ours.x == Approx(world.x()));
+    CHECK(ours.y == Approx(world.y()));
+    CHECK(ours.z == Approx(world.z()));
+}
+
 TEST_CASE("writeVdb: a host with a decimal comma writes the same bytes and reads them back",
           "[vdb][property]") {
     const test::TemporaryFolder folder;

@@ -90,6 +90,30 @@ Json rasterInfo(const std::string& path, const Run& run) {
     return info;
 }
 
+// A point p of index space is at rows 0 to 2 of the matrix times (p, 1).
+Json rowsOf(const Affine& m) {
+    Json rows = Json::array();
+    for (std::size_t r = 0; r < 4; ++r) rows.push_back(Json::array({m[r], m[4 + r], m[8 + r], m[12 + r]}));
+    return rows;
+}
+
+// The box in the world around all active voxels' cubes.
+void placeInWorld(const GridSummary& s, Json& grid) {
+    Vec3d low, high;
+    for (int corner = 0; corner < 8; ++corner) {
+        Vec3d at;
+        for (int axis = 0; axis < 3; ++axis)
+            at[axis] = corner >> axis & 1 ? s.activeBox.max[axis] + 0.5 : s.activeBox.min[axis] - 0.5;
+        const Vec3d world = transformed(s.transform, at);
+        for (int axis = 0; axis < 3; ++axis) {
+            low[axis] = corner ? std::min(low[axis], world[axis]) : world[axis];
+            high[axis] = corner ? std::max(high[axis], world[axis]) : world[axis];
+        }
+    }
+    grid["world_min"] = triple(low);
+    grid["world_max"] = triple(high);
+}
+
 Json gridInfo(const GridSummary& s) {
     Json grid{{"name", s.name},
               {"type", s.type},
@@ -101,7 +125,9 @@ Json gridInfo(const GridSummary& s) {
     if (s.activeVoxels > 0) {
         grid["active_min"] = triple(s.activeBox.min);
         grid["active_max"] = triple(s.activeBox.max);
+        if (s.linear) placeInWorld(s, grid);
     }
+    if (s.linear) grid["index_to_world"] = rowsOf(s.transform);
     if (s.isFloat) {
         grid["background"] = s.background;
         grid["minimum"] = s.minimum;

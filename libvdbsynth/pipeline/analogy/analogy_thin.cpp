@@ -36,7 +36,8 @@ class ThinSamples {
 public:
     ThinSamples(const BrickField& plain, float dig, float band, ThinParts thin, const RunContext& ctx)
         : mCoarsening(1) {
-        while (double(plain.box().volume()) / std::pow(mCoarsening, 3) > kFinest) mCoarsening *= 2;
+        while (double(plain.box().volume()) > kFinest * mCoarsening * mCoarsening * mCoarsening)
+            mCoarsening *= 2;
         const Distances distances = distancesToSurface(plain, band, mCoarsening, ctx);
         mSize = distances.size;
         const Thickness thickness = localThickness(distances, mCoarsening, Phase::Solid, ctx);

@@ -1,7 +1,9 @@
 """What the program tells of itself: versions, doctor, manual pages, and words for the shells."""
 import json
 import os
+import pty
 import re
+import select
 import shutil
 import subprocess
 import unittest
@@ -161,6 +163,31 @@ class Completion(CliTest):
                 "vdb_synth help --man doc": ["doctor"]}.items():
             with self.subTest(line):
                 self.assertEqual(self.bash(line), offered)
+
+    def test_bash_on_a_terminal(self):
+        """Tab pressed in an interactive bash: its readline cuts the words and inserts the rest."""
+        first, second = pty.openpty()
+        process = subprocess.Popen(["bash", "--norc", "--noprofile", "-i"], stdin=second, stdout=second, stderr=second, cwd=self.folder,
+                                   env={**self.environment, "PS1": "", "TERM": "dumb", "HISTFILE": ""}, start_new_session=True)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        self.addCleanup(os.close, first)
+        self.addCleanup(os.close, second)
+
+        def answer(keys, until):
+            os.write(first, keys)
+            said = b""
+            while until not in said:
+                self.assertTrue(select.select([first], [], [], 20)[0], said)
+                said += os.read(first, 4096)
+            return said.decode()
+
+        answer(b"source <(vdb_synth completion bash); vdb_synth() { printf '[%s]' \"$@\"; echo; }; echo rea''dy\n", b"ready")
+        for typed, run in {"conv\ta.v\t-o b.ob\t": "[convert][a.vdb][-o][b.obj]", "synth --meth\tex\t": "[synth][--method][exact]",
+                           "synth --method=ex\t": "[synth][--method=exact]", "analogy --direction axis:-x\t": "[analogy][--direction][axis:-x]",
+                           "batch e\t": "[batch][e.json]", "synth --index-cache fo\t": "[synth][--index-cache][folder/]"}.items():
+            with self.subTest(typed):
+                self.assertIn(run, answer(b"vdb_synth " + typed.encode() + b"; echo en''d\n", b"end\r\n"))
 
     def test_bash_asks_for_every_option(self):
         for command in ("synth", "doctor", "batch"):

@@ -153,7 +153,7 @@ const char* const kViewerScript = R"(<script>
       gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
       const tilt = Math.max(-1.5707, Math.min(1.5707, tilt0 + shared.tilt)), turn = turn0 + shared.turn;
       const back = [0, 1, 2].map(i => Math.cos(tilt) * (Math.cos(turn) * across[0][i] + Math.sin(turn) * across[1][i]) + Math.sin(tilt) * upright[i]);
-      const right = unit(cross(upright, back)), up = cross(back, right), distance = 3.7 * shared.near;
+      const right = unit(cross(upright, back)), up = cross(back, right), distance = 4.0 * shared.near;
       gl.uniformMatrix4fv(place("view"), false, [right[0], up[0], back[0], 0, right[1], up[1], back[1], 0, right[2], up[2], back[2], 0,
         shared.moveX, shared.moveY, -distance, 1]);
       const span = 0.26 * Math.max(1, height / width), far = distance + 4, near = Math.max(0.02, distance - 4);
@@ -190,7 +190,7 @@ const char* const kViewerScript = R"(<script>
       fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
       if (fingers.size === 2) return nearer(before / Math.max(1, apart()));
       if (event.shiftKey || event.buttons & 2) {
-        const scale = 2 * 0.26 * 3.7 * shared.near / canvas.clientHeight;
+        const scale = 2 * 0.26 * 4.0 * shared.near / canvas.clientHeight;
         shared.moveX += dx * scale; shared.moveY -= dy * scale;
       } else {
         shared.turn -= dx * 0.008; shared.tilt += dy * 0.008;

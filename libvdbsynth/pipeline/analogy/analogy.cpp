@@ -73,6 +73,8 @@ GridPtr directionGrid(const FrameField& frames, const FieldPlace& place, const I
     return grid;
 }
 
+constexpr int kDraftLevels = 2;  // of its half resolution, so that the target's band is no wider than else
+
 VolumeAnalogyResult searched(const SearchFields& search, const FrameField& frames,
                              const std::vector<AnalogyModelPair>& pairs, const AnalogyOptions& options,
                              const RunContext& ctx) {
@@ -85,13 +87,16 @@ VolumeAnalogyResult searched(const SearchFields& search, const FrameField& frame
     for (std::size_t p = 0; p < pairs.size(); ++p)
         given.push_back(
             {search.pairs[p].plain, search.pairs[p].textured, &pairFrames[p], search.pairs[p].inner});
-    return makeAnalogy(given, *search.target, frames, options.synthesis, ctx);
+    VolumeAnalogyOptions synthesis = options.synthesis;
+    if (options.draft && synthesis.levels == 0)
+        synthesis.levels = std::min(kDraftLevels, usefulLevels(given, ctx));
+    return makeAnalogy(given, *search.target, frames, synthesis, ctx);
 }
 
 // Strength times mask times what thin parts bear; empty: `strength` everywhere.
 BrickField weightOver(const LevelSet& target, const IndexBox& box, const BrickField& plain, float dig,
                       float reach, float band, const AnalogyOptions& options, const RunContext& ctx) {
-    BrickField weight = thinWeight(plain, dig, reach, band, options.thin, ctx);
+    BrickField weight = thinWeight(plain, dig, reach, band, options, ctx);
     const float strength = float(options.strength);
     if (!options.mask && weight.box().empty()) return weight;
     const auto times = [&](const BrickField& other, float factor) {
@@ -136,10 +141,15 @@ AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const Leve
     AnalogyResult result;
     const MappedTarget mapped{levelSetHash(*target.grid), voxelSizeOf(*target.grid), target.domainRecorded};
     std::vector<PairFields> fields;
-    for (const AnalogyModelPair& pair : pairs) fields.push_back(gatherPair(pair, options.scale, ctx));
+    Stage reading(ctx, "distances around the surfaces", pairs.size() + 1);
+    for (const AnalogyModelPair& pair : pairs) {
+        fields.push_back(gatherPair(pair, options.scale, ctx));
+        reading.advance();
+    }
     const TextureDepth depth = depthOf(fields, options.scale);
     result.reach = depth.reach;
-    const int levels = options.synthesis.levels == 0 ? 3 : std::clamp(options.synthesis.levels, 1, 6);
+    const int most = options.draft ? kDraftLevels : 3;
+    const int levels = options.synthesis.levels == 0 ? most : std::clamp(options.synthesis.levels, 1, 6);
     const int radius = (options.synthesis.half + 2) << (levels - 1 + int(options.draft));
     const int band = int(std::ceil(result.reach)) + radius + 2;
     const CutFaces cut = facesTouched(target);
@@ -151,8 +161,9 @@ AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const Leve
                   "the analogy", "use larger voxels, fewer `levels` or a smaller `half`");
     const auto plain =
         std::make_shared<const BrickField>(gatherWideBand(*target.grid, box, cut, float(band), ctx));
+    reading.advance();
     const FieldPlace place{target.grid.get(), {double(box.min.x), double(box.min.y), double(box.min.z)}, 1};
-    const SearchFields search = searchFields(pairs, fields, plain, place, options, ctx);
+    const SearchFields search = searchFields(fields, plain, place, options.draft, ctx);
     const FrameField frames =
         framesOf(search.target, search.place, options.direction, "the target", "direction", ctx);
     VolumeAnalogyResult made = searched(search, frames, pairs, options, ctx);

@@ -9,10 +9,9 @@
 
 namespace vdbsynth {
 
-SearchFields searchFields(const std::vector<AnalogyModelPair>& pairs, const std::vector<PairFields>& fields,
-                          std::shared_ptr<const BrickField> target, const FieldPlace& place,
-                          const AnalogyOptions& options, const RunContext& ctx) {
-    if (!options.draft) return {std::move(target), place, fields};
+SearchFields searchFields(const std::vector<PairFields>& fields, std::shared_ptr<const BrickField> target,
+                          const FieldPlace& place, bool draft, const RunContext& ctx) {
+    if (!draft) return {std::move(target), place, fields};
     SearchFields search;
     const BrickField half = halved(*target, ctx);
     search.target = std::make_shared<const BrickField>(
@@ -21,8 +20,13 @@ SearchFields searchFields(const std::vector<AnalogyModelPair>& pairs, const std:
             for (int i = 0; i < BrickField::kSamples; ++i) samples[i] /= 2;
         }));
     search.place = {place.like, place.corner + Vec3d{0.5, 0.5, 0.5}, 2};
-    for (const AnalogyModelPair& pair : pairs)
-        search.pairs.push_back(gatherPair(pair, options.scale / 2, ctx));
+    for (PairFields pair : fields) {
+        pair.plain = std::make_shared<const BrickField>(scaledField(*pair.plain, 0.5, ctx));
+        pair.textured = std::make_shared<const BrickField>(scaledField(*pair.textured, 0.5, ctx));
+        pair.inner = pair.plain->box();
+        pair.place.step *= 2;
+        search.pairs.push_back(std::move(pair));
+    }
     return search;
 }
 

@@ -14,20 +14,6 @@
 namespace vdbsynth {
 namespace {
 
-BrickField scaled(const BrickField& field, double scale, const RunContext& ctx) {
-    const Index3 size = field.box().size();
-    Index3 to;
-    for (int axis = 0; axis < 3; ++axis) to[axis] = std::max(1, int(std::lround(size[axis] * scale)));
-    const float back = float(1 / scale);
-    return BrickField::generate(IndexBox::fromSize(to), ctx, [&](const IndexBox& brick, float* samples) {
-        for (int i = 0; i < BrickField::kSamples; ++i) {
-            const Index3 p = brick.min + Index3{i >> 6, (i >> 3) & 7, i & 7};
-            samples[i] = sampleTrilinear(field, {float(p.x) * back, float(p.y) * back, float(p.z) * back}) *
-                         float(scale);
-        }
-    });
-}
-
 // The box without what lies beyond a model's domain at its cut faces.
 IndexBox knownPart(const LevelSet& model, const CutFaces& cut, IndexBox box) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -79,6 +65,20 @@ IndexBox deepenedBox(const IndexBox& box, const CutFaces& cut, const BrickField&
 
 }  // namespace
 
+BrickField scaledField(const BrickField& field, double scale, const RunContext& ctx) {
+    const Index3 size = field.box().size();
+    Index3 to;
+    for (int axis = 0; axis < 3; ++axis) to[axis] = std::max(1, int(std::lround(size[axis] * scale)));
+    const float back = float(1 / scale);
+    return BrickField::generate(IndexBox::fromSize(to), ctx, [&](const IndexBox& brick, float* samples) {
+        for (int i = 0; i < BrickField::kSamples; ++i) {
+            const Index3 p = brick.min + Index3{i >> 6, (i >> 3) & 7, i & 7};
+            samples[i] = sampleTrilinear(field, {float(p.x) * back, float(p.y) * back, float(p.z) * back}) *
+                         float(scale);
+        }
+    });
+}
+
 void requireOnePlace(const AnalogyModelPair& pair) {
     const auto& a = pair.plain->grid->transform();
     const auto& b = pair.textured->grid->transform();
@@ -95,7 +95,7 @@ BrickField gatherTextured(const LevelSet& textured, const IndexBox& box, const C
     const IndexBox known = knownPart(textured, cut, box);
     const BrickField field = deepened(gatherWideBand(*textured.grid, known, cut, reach, ctx),
                                       known.min - box.min, box.size(), ctx);
-    return scale == 1 ? field : scaled(field, scale, ctx);
+    return scale == 1 ? field : scaledField(field, scale, ctx);
 }
 
 float reachOf(const BrickField& plain, const BrickField& textured) {
@@ -130,14 +130,15 @@ PairFields gatherPair(const AnalogyModelPair& pair, double scale, const RunConte
     PairFields fields;
     fields.box = grownBox(domain, cut, kMostReach);
     requireMemory(ctx, double(fields.box.volume()) * 12, "the pair", "use larger voxels or crop the pair");
-    const auto gathered = [&](const LevelSet& model, const CutFaces& faces, double by) {
-        return std::make_shared<const BrickField>(
-            gatherTextured(model, fields.box, faces, float(kMostReach), by, ctx));
+    constexpr float kFaces = 3;  // [voxels] reach that says whether a face is in the solid
+    const auto gathered = [&](const LevelSet& model, const CutFaces& faces, float reach, double by) {
+        return std::make_shared<const BrickField>(gatherTextured(model, fields.box, faces, reach, by, ctx));
     };
-    fields.box = deepenedBox(fields.box, cut, *gathered(*pair.plain, cutPlain, 1),
-                             *gathered(*pair.textured, cutTextured, 1));
-    fields.plain = gathered(*pair.plain, cutPlain, scale);
-    fields.textured = gathered(*pair.textured, cutTextured, scale);
+    if (std::find(cut.begin(), cut.end(), true) != cut.end())
+        fields.box = deepenedBox(fields.box, cut, *gathered(*pair.plain, cutPlain, kFaces, 1),
+                                 *gathered(*pair.textured, cutTextured, kFaces, 1));
+    fields.plain = gathered(*pair.plain, cutPlain, float(kMostReach), scale);
+    fields.textured = gathered(*pair.textured, cutTextured, float(kMostReach), scale);
     fields.cutTextured = cutTextured;
     fields.inner = fields.plain->box();
     fields.place = {pair.plain->grid.get(),

@@ -37,6 +37,9 @@ struct PairFields {
 /// @throw Error ShapeMismatch (other voxels, or no overlap), Memory
 PairFields gatherPair(const AnalogyModelPair& pair, double scale, const RunContext& ctx);
 
+/// A field in larger or smaller voxels; distances are in its own.
+BrickField scaledField(const BrickField& field, double scale, const RunContext& ctx);
+
 /// What a search runs on: the target and the pairs as fields.
 struct SearchFields {
     std::shared_ptr<const BrickField> target;
@@ -45,10 +48,9 @@ struct SearchFields {
 };
 
 /// The target's field and the pairs' as they are or, for a draft, the target at half the resolution and the
-/// pairs gathered again at half the scale.
-SearchFields searchFields(const std::vector<AnalogyModelPair>& pairs, const std::vector<PairFields>& fields,
-                          std::shared_ptr<const BrickField> target, const FieldPlace& place,
-                          const AnalogyOptions& options, const RunContext& ctx);
+/// pairs at half the scale.
+SearchFields searchFields(const std::vector<PairFields>& fields, std::shared_ptr<const BrickField> target,
+                          const FieldPlace& place, bool draft, const RunContext& ctx);
 
 /// The sources of a draft's voxels for the eight of the target that each stands for, still in voxels of the
 /// draft's pairs.
@@ -94,8 +96,8 @@ float digOf(const BrickField& plain, const BrickField& textured);
 /// @param dig    digOf   @param reach  of the texture [voxels]
 /// @return empty where nothing is too thin, or `dig` is under 1
 /// @throw Error Memory, Cancelled   @par Repeats same bits for any number of threads
-BrickField thinWeight(const BrickField& plain, float dig, float reach, float band, ThinParts thin,
-                      const RunContext& ctx);
+BrickField thinWeight(const BrickField& plain, float dig, float reach, float band,
+                      const AnalogyOptions& options, const RunContext& ctx);
 
 /// Frames around a field's surface, from a source of directions.
 /// @param what   for messages, such as "the target"

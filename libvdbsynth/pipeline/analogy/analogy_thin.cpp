@@ -34,8 +34,9 @@ float shareOf(float radius, float dig, ThinParts thin) {
 // Weights of the samples of a solid next to its surface, -1 elsewhere.
 class ThinSamples {
 public:
-    ThinSamples(const BrickField& plain, float dig, float band, ThinParts thin, const RunContext& ctx)
-        : mCoarsening(1) {
+    ThinSamples(const BrickField& plain, float dig, float band, const AnalogyOptions& options,
+                const RunContext& ctx)
+        : mCoarsening(options.draft ? 2 : 1) {
         while (double(plain.box().volume()) > kFinest * mCoarsening * mCoarsening * mCoarsening)
             mCoarsening *= 2;
         const Distances distances = distancesToSurface(plain, band, mCoarsening, ctx);
@@ -46,7 +47,8 @@ public:
         parallelFor(ctx, raw.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const float depth = -distances.values[i] * float(mCoarsening);
-                if (depth > 0 && depth <= deepest) raw[i] = shareOf(thickness.diameter[i] / 2, dig, thin);
+                if (depth > 0 && depth <= deepest)
+                    raw[i] = shareOf(thickness.diameter[i] / 2, dig, options.thin);
             }
         });
         mWeight = smoothed(raw, ctx);
@@ -124,12 +126,14 @@ float digOf(const BrickField& plain, const BrickField& textured) {
     return dig > deepest - kBeyond ? -1 : dig;
 }
 
-BrickField thinWeight(const BrickField& plain, float dig, float reach, float band, ThinParts thin,
-                      const RunContext& ctx) {
+BrickField thinWeight(const BrickField& plain, float dig, float reach, float band,
+                      const AnalogyOptions& options, const RunContext& ctx) {
+    const ThinParts thin = options.thin;
     if (thin == ThinParts::AsIs || dig < 1) return {};
     requireMemory(ctx, std::min(double(plain.box().volume()), kFinest) * 24, "the thickness of the target",
                   "use larger voxels or set `thin` to as-is");
-    const ThinSamples samples(plain, dig, band, thin, ctx);
+    Stage stage(ctx, "thickness of the target", 2);
+    const ThinSamples samples(plain, dig, band, options, ctx);
     BrickField weight = BrickField::fromVoxels(plain.box(), ctx, [&](const Index3& p) {
         const float d = plain.inside(p);
         if (d > reach + kBeyond || d < -dig - kBeyond) return 1.f;
@@ -137,6 +141,7 @@ BrickField thinWeight(const BrickField& plain, float dig, float reach, float ban
         if (d > -0.5f) at = at - sampleGradient(plain, at) * (d + 0.5f);
         return samples.at(at);
     });
+    stage.advance(2);
     const double share = thinShare(plain, weight, ctx);
     if (share < kWorthSaying) return {};
     message(ctx, MessageLevel::Note,

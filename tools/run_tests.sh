@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # Installs what is needed, builds and runs the tests.
 # Usage: tools/run_tests.sh [--all] [ctest options]   --all also installs the rivals and linters that some tests
-# compare with, and treats warnings as errors
+# compare with, builds and tests the Python module, and treats warnings as errors
 set -euo pipefail
 cd "$(dirname "$0")/.."
-packages=test preset=release
+packages=test preset=release options=(-DVDBSYNTH_BUILD_TESTS=ON)
 if [ "${1:-}" = --all ]; then
-  packages=all preset=ci
+  packages=all preset=ci options+=(-DVDBSYNTH_PYTHON=ON)
   shift
 fi
 tools/dev/packages.sh "$packages"
-cmake --preset "$preset" -DVDBSYNTH_BUILD_TESTS=ON
+cmake --preset "$preset" "${options[@]}"
 cmake --build --preset "$preset"
 ctest --test-dir "build/$preset" --output-on-failure -j "$(nproc)" "$@"

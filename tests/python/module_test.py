@@ -528,7 +528,7 @@ class Installed(ModuleTest):
         build = pathlib.Path(vdbsynth.__file__).parents[2]
         done = subprocess.run(["cmake", "--install", build, "--component", "python", "--prefix", self.folder], capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
-        files = {str(p.relative_to(self.folder)) for p in pathlib.Path(self.folder).rglob("*") if p.is_file()}
+        files = {str(p.relative_to(self.folder)) for p in pathlib.Path(self.folder, "lib").rglob("*") if p.is_file()}
         package = "lib/python3/dist-packages/vdbsynth/"
         self.assertEqual({f for f in files if not f.endswith(".so")}, {package + f for f in ("__init__.py", "__init__.pyi", "py.typed")})
         self.assertEqual(len([f for f in files if f.startswith(package + "_vdbsynth.cpython-") and f.endswith(".so")]), 1)

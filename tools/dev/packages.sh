@@ -5,8 +5,9 @@ build=(g++ cmake ninja-build ccache libopenvdb-dev libboost-iostreams-dev libtbb
        nlohmann-json3-dev libeigen3-dev libnanoflann-dev libjpeg62-turbo-dev libkissfft-dev libopenexr-dev libpng-dev libpugixml-dev
        libtiff-dev libtinygltf-dev libxxhash-dev libyaml-cpp-dev zlib1g-dev)
 test=(catch2 python3 procps)
-# Rivals to compare with, programs that must read what we write, fuzzers, linters.
-all=(libopenvdb-tools python3-openvdb python3-numpy python3-scipy python3-skimage chromium blender clang clang-format libclang-rt-14-dev)
+# Rivals to compare with, programs that must read what we write, fuzzers, linters, what the Python module is built with.
+all=(libopenvdb-tools python3-openvdb python3-numpy python3-scipy python3-skimage chromium blender clang clang-format libclang-rt-14-dev
+     python3-dev pybind11-dev libboost-python-dev)
 
 # Rivals of the benchmarks.
 bench=(libbenchmark-dev libfaiss-dev libfftw3-dev libopenblas-dev libopenvdb-tools python3)

@@ -1553,7 +1553,7 @@ def relief(samples: LevelSet | Heights | Sequence[LevelSet | Heights], target: L
         mask: GridLike | None = None,
         maskModel: LevelSet | None = None,
         maskAttribute: str = '',
-        maskImage: NDArray | None = None,
+        maskImage: NDArray[Any] | None = None,
         fade: float = 0.0,
         fit: bool = False,
         halfWidth: float = 3.0,

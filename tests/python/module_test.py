@@ -488,6 +488,21 @@ class Stubs(unittest.TestCase):
         self.assertEqual((SOURCE / "python" / "vdbsynth" / "__init__.pyi").read_text(), made.stdout,
                          "run PYTHONPATH=build/release/python tools/dev/python_stubs.py python/vdbsynth/__init__.pyi")
 
+    @unittest.skipUnless(shutil.which("mypy"), "mypy is absent")
+    def test_mypy_reads_them(self):
+        code = ("import vdbsynth\n"
+                "grid = vdbsynth.make('grid', resolution=32)\n"
+                "result = vdbsynth.synth([grid, grid], size=('2x', 64, '1x'), border='cut', exemplarBox=((0, 0, 0), (9, 9, 9)), seed=3)\n"
+                "result.model.write(['a.vdb'], extraGrids=result.map.to_grids(result.model), metadata={'a': 'b'})\n"
+                "vdbsynth.analogy([(grid, grid)], grid, direction=(0, 0, 1))\n")
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "typed.py")
+            for line, says in [("", "Success"), ("vdbsynth.synth(grid, border='round')\n", "incompatible type"), ("vdbsynth.synth(grid, blok=3)\n", "Unexpected keyword")]:
+                file.write_text(code + line)
+                done = subprocess.run(["mypy", "--strict", "--cache-dir", os.path.join(folder, "cache"), "typed.py"], cwd=folder,
+                                      env=dict(os.environ, MYPYPATH=os.environ["PYTHONPATH"]), capture_output=True, text=True)
+                self.assertIn(says, done.stdout)
+
     def test_every_name_has_a_text(self):
         for name in vdbsynth.__all__:
             if not isinstance(getattr(vdbsynth, name), type):

@@ -104,6 +104,15 @@ class Arrays(ModuleTest):
         numpy.testing.assert_allclose(points.min(0), [-0.5] * 3, atol=0.1)
         numpy.testing.assert_allclose(points.max(0), [23.5, 19.5, 7.5], atol=0.1)
 
+    def test_a_solid_that_the_array_cuts_is_a_piece(self):
+        said = []
+        values = distances((20, 20, 20), 1.0, 7.0, (0, 10, 10))
+        model = vdbsynth.LevelSet.from_numpy(values, onMessage=lambda level, text: said.append((level, text)))
+        self.assertTrue(any("cut open at low x" in text for level, text in said), said)
+        self.assertTrue(model.domainRecorded)
+        points = model.to_mesh().points
+        numpy.testing.assert_allclose([points[:, 0].min(), points[:, 0].max()], [-0.5, 7], atol=0.2)
+
     def test_a_volume_is_what_convert_makes_of_its_file(self):
         rng = numpy.random.default_rng(3)
         volume = rng.random((18, 20, 22)).astype("float32")

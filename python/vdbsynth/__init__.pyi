@@ -260,7 +260,7 @@ class LevelSet:
             cancel: Event | None = None) -> LevelSet:
         """A level set of signed distances [x, y, z] in world units, negative inside. `origin` [world] is the
         middle of element (0, 0, 0). Distances beyond the half-width are clamped, so an array that covers the
-        band and the inside is enough. What lies beyond the array is outside."""
+        band and the inside is enough. A solid that the array cuts is closed there and taken as a piece; a message says so."""
         ...
     @staticmethod
     def from_openvdb(grids: GridLike | Sequence[GridLike], *,
@@ -1555,7 +1555,7 @@ def relief(samples: LevelSet | Heights | Sequence[LevelSet | Heights], target: L
         mask: GridLike | None = None,
         maskModel: LevelSet | None = None,
         maskAttribute: str = '',
-        maskImage: NDArray | None = None,
+        maskImage: NDArray[Any] | None = None,
         fade: float = 0.0,
         fit: bool = False,
         halfWidth: float = 3.0,

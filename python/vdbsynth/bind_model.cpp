@@ -156,16 +156,17 @@ using LevelSetClass = py::class_<LevelSet, std::shared_ptr<LevelSet>>;
 void defineMakers(LevelSetClass& levelSet) {
     const py::tuple zero = py::make_tuple(0.0, 0.0, 0.0);
     levelSet
-        .def_static("from_numpy", fromNumpy, py::arg("array"), py::arg("voxel_size") = 1.0,
-                    py::arg("origin") = zero,
-                    documented<ArrayOptions, Call>(
-                        "LevelSet.from_numpy",
-                        "A level set of signed distances [x, y, z] in world units, negative inside. `origin` "
-                        "[world] is the\n"
-                        "middle of element (0, 0, 0). Distances beyond the half-width are clamped, so an "
-                        "array that covers the\n"
-                        "band and the inside is enough. What lies beyond the array is outside.")
-                        .c_str())
+        .def_static(
+            "from_numpy", fromNumpy, py::arg("array"), py::arg("voxel_size") = 1.0, py::arg("origin") = zero,
+            documented<ArrayOptions, Call>(
+                "LevelSet.from_numpy",
+                "A level set of signed distances [x, y, z] in world units, negative inside. `origin` "
+                "[world] is the\n"
+                "middle of element (0, 0, 0). Distances beyond the half-width are clamped, so an "
+                "array that covers the\n"
+                "band and the inside is enough. A solid that the array cuts is closed there and taken as a "
+                "piece; a message says so.")
+                .c_str())
         .def_static("from_volume", fromVolume, py::arg("array"), py::arg("voxel_size") = 1.0,
                     py::arg("origin") = zero,
                     documented<VolumeOptions, BandOptions, Call>(

@@ -87,6 +87,9 @@ py::list functionsWithKeywords() {
 PYBIND11_MODULE(_vdbsynth, module) {
     module.doc() = "The methods of vdb_synth on level sets in memory.";
     module.attr("__version__") = VDBSYNTH_VERSION;
+    // Classes and texts name the package, where people find them.
+    const py::object own = module.attr("__name__");
+    module.attr("__name__") = "vdbsynth";
     bindError(module);
     bindGrid(module);
     bindShapes(module);
@@ -101,9 +104,10 @@ PYBIND11_MODULE(_vdbsynth, module) {
                "Keywords of a function or method, such as \"synth\" or \"LevelSet.write\": a list of (name, "
                "type, default, text).");
     module.def("functions_with_keywords", functionsWithKeywords, "All names that keywords() takes.");
-    // Classes are those of the package, where people find them.
-    for (const auto& [name, value] : py::reinterpret_borrow<py::dict>(module.attr("__dict__")))
-        if (PyType_Check(value.ptr())) value.attr("__module__") = "vdbsynth";
+    // What wrote into the options that the texts were made of.
+    for (auto& [function, keywords] : keywordsOfFunctions())
+        for (Keyword& keyword : keywords) keyword.take.clear();
+    module.attr("__name__") = own;
 }
 
 }  // namespace vdbsynth::python

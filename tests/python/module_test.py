@@ -104,6 +104,15 @@ class Arrays(ModuleTest):
         numpy.testing.assert_allclose(points.min(0), [-0.5] * 3, atol=0.1)
         numpy.testing.assert_allclose(points.max(0), [23.5, 19.5, 7.5], atol=0.1)
 
+    def test_a_solid_that_the_array_cuts_is_a_piece(self):
+        said = []
+        values = distances((20, 20, 20), 1.0, 7.0, (0, 10, 10))
+        model = vdbsynth.LevelSet.from_numpy(values, onMessage=lambda level, text: said.append((level, text)))
+        self.assertTrue(any("cut open at low x" in text for level, text in said), said)
+        self.assertTrue(model.domainRecorded)
+        points = model.to_mesh().points
+        numpy.testing.assert_allclose([points[:, 0].min(), points[:, 0].max()], [-0.5, 7], atol=0.2)
+
     def test_a_volume_is_what_convert_makes_of_its_file(self):
         rng = numpy.random.default_rng(3)
         volume = rng.random((18, 20, 22)).astype("float32")
@@ -488,6 +497,21 @@ class Stubs(unittest.TestCase):
         self.assertEqual((SOURCE / "python" / "vdbsynth" / "__init__.pyi").read_text(), made.stdout,
                          "run PYTHONPATH=build/release/python tools/dev/python_stubs.py python/vdbsynth/__init__.pyi")
 
+    @unittest.skipUnless(shutil.which("mypy"), "mypy is absent")
+    def test_mypy_reads_them(self):
+        code = ("import vdbsynth\n"
+                "grid = vdbsynth.make('grid', resolution=32)\n"
+                "result = vdbsynth.synth([grid, grid], size=('2x', 64, '1x'), border='cut', exemplarBox=((0, 0, 0), (9, 9, 9)), seed=3)\n"
+                "result.model.write(['a.vdb'], extraGrids=result.map.to_grids(result.model), metadata={'a': 'b'})\n"
+                "vdbsynth.analogy([(grid, grid)], grid, direction=(0, 0, 1))\n")
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "typed.py")
+            for line, says in [("", "Success"), ("vdbsynth.synth(grid, border='round')\n", "incompatible type"), ("vdbsynth.synth(grid, blok=3)\n", "Unexpected keyword")]:
+                file.write_text(code + line)
+                done = subprocess.run(["mypy", "--strict", "--cache-dir", os.path.join(folder, "cache"), "typed.py"], cwd=folder,
+                                      env=dict(os.environ, MYPYPATH=os.environ["PYTHONPATH"]), capture_output=True, text=True)
+                self.assertIn(says, done.stdout)
+
     def test_every_name_has_a_text(self):
         for name in vdbsynth.__all__:
             if not isinstance(getattr(vdbsynth, name), type):
@@ -528,7 +552,7 @@ class Installed(ModuleTest):
         build = pathlib.Path(vdbsynth.__file__).parents[2]
         done = subprocess.run(["cmake", "--install", build, "--component", "python", "--prefix", self.folder], capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
-        files = {str(p.relative_to(self.folder)) for p in pathlib.Path(self.folder).rglob("*") if p.is_file()}
+        files = {str(p.relative_to(self.folder)) for p in pathlib.Path(self.folder, "lib").rglob("*") if p.is_file()}
         package = "lib/python3/dist-packages/vdbsynth/"
         self.assertEqual({f for f in files if not f.endswith(".so")}, {package + f for f in ("__init__.py", "__init__.pyi", "py.typed")})
         self.assertEqual(len([f for f in files if f.startswith(package + "_vdbsynth.cpython-") and f.endswith(".so")]), 1)

@@ -3,5 +3,5 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 command -v clang-format >/dev/null || { echo "clang-format is absent: skipped"; exit 77; }
-find libvdbsynth tools tests -name '*.h' -o -name '*.cpp' | xargs clang-format --dry-run -Werror
+find libvdbsynth tools python tests -name '*.h' -o -name '*.cpp' | xargs clang-format --dry-run -Werror
 echo "all sources are formatted"

@@ -14,16 +14,16 @@ for room, direct in [
     ("coordinates", ["search", "surface"]), ("patch", ["coordinates"]), ("texture", ["coordinates", "map"]), ("relief", ["coordinates", "map", "distance"]),
     ("synth", ["search", "map"]), ("analogy", ["search", "surface", "map"]), ("measure", ["relief", "synth"]),
     ("vdb", ["io", "map", "solid"]), ("render", ["vdb"]),
-    ("pipeline", ["measure", "synth", "analogy", "patch", "texture", "relief", "procedural", "render"]), ("tools", ["pipeline"]),
+    ("pipeline", ["measure", "synth", "analogy", "patch", "texture", "relief", "procedural", "render"]), ("tools", ["pipeline"]), ("python", ["pipeline"]),
 ]:
     BELOW[room] = {room}.union(*[BELOW[d] for d in direct]) if direct else {room}
 
 # Which rooms may see which third party.
 ALLOWED = {
-    "openvdb/": {"vdb", "render", "pipeline"}, "tbb/": {"base"}, "xxhash.h": {"base"}, "png.h": {"io"},
+    "openvdb/": {"vdb", "render", "pipeline", "python"}, "pybind11/": {"python"}, "boost/python": {"python"}, "tbb/": {"base"}, "xxhash.h": {"base"}, "png.h": {"io"},
     "tiny_obj_loader.h": {"io"}, "tiffio.h": {"io"}, "jpeglib.h": {"io"}, "Imf": {"io"}, "pugixml.hpp": {"io"}, "tiny_gltf.h": {"io"}, "zlib.h": {"io"}, "nanoflann.hpp": {"geometry"}, "flann/": {"search"}, "Eigen/": {"math", "geometry", "patch"}, "boost/graph/": {"math"}, "boost/program_options": {"tools"}, "nlohmann/": {"io", "tools"}, "yaml-cpp/": {"tools"},
 }
-ONE_FILE = {"png.h", "zlib.h", "nanoflann.hpp", "flann/", "tiny_obj_loader.h", "tiffio.h", "jpeglib.h", "Imf", "tiny_gltf.h", "xxhash.h", "boost/graph/", "boost/program_options", "yaml-cpp/"}
+ONE_FILE = {"png.h", "zlib.h", "nanoflann.hpp", "flann/", "tiny_obj_loader.h", "tiffio.h", "jpeglib.h", "Imf", "tiny_gltf.h", "xxhash.h", "boost/graph/", "boost/program_options", "boost/python", "yaml-cpp/"}
 
 # The C library's own, of which the last bit differs between processors: results are to be the same everywhere.
 # Rounded exactly, and so allowed: sqrt, floor, ceil, round, fmod, ldexp, frexp and the like.
@@ -145,9 +145,10 @@ def main(root):
     breaches = inexact(root) + retyped(root)
     users = {}
     for path in sorted([*root.glob("libvdbsynth/**/*.h"), *root.glob("libvdbsynth/**/*.cpp"),
-                        *root.glob("tools/vdb_synth/**/*.h"), *root.glob("tools/vdb_synth/**/*.cpp")]):
+                        *root.glob("tools/vdb_synth/**/*.h"), *root.glob("tools/vdb_synth/**/*.cpp"),
+                        *root.glob("python/vdbsynth/*.h"), *root.glob("python/vdbsynth/*.cpp")]):
         relative = path.relative_to(root)
-        room = relative.parts[1] if relative.parts[0] == "libvdbsynth" else "tools"
+        room = relative.parts[1] if relative.parts[0] == "libvdbsynth" else relative.parts[0]
         for number, line in enumerate(path.read_text().splitlines(), 1):
             match = re.match(r'\s*#include\s*[<"]([^">]+)[">]', line)
             if not match:
@@ -158,7 +159,9 @@ def main(root):
             if inner and inner.group(1) not in BELOW[room]:
                 breaches.append(f"{where}: {room} may not include {inner.group(1)}")
             if include.startswith("tools/") and room != "tools":
-                breaches.append(f"{where}: the library may not include the tool")
+                breaches.append(f"{where}: the tool is included by itself only")
+            if include.startswith("python/") and room != "python":
+                breaches.append(f"{where}: the Python module is included by itself only")
             for prefix, rooms in ALLOWED.items():
                 if include.startswith(prefix):
                     users.setdefault(prefix, set()).add(str(relative))

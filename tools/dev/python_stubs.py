@@ -78,6 +78,7 @@ RETURNS = {
     "ReliefExtraction.reliefVector": "Grid | None", "ReliefExtraction.surface": "LevelSet | None", "ReliefResult.sources": "list[Grid]",
     "TextureSample.maps": "dict[str, tuple[int, int]]",
 }
+BARE_ARRAY = re.compile(r"NDArray(?!\[)")
 BOXES = {"LevelSet.domain", "LevelSet.box", "ModelStatistics.domain"}
 PLACES = {"origin", "size"}
 
@@ -149,7 +150,7 @@ def function(key, value, indent, static=False):
     if owner and not static:
         arguments.insert(0, "self")
     words = vdbsynth.keywords(key) if takes else []
-    keywords = [f"{word}: {annotation} = {default}" for word, annotation, default, _ in words]
+    keywords = [f"{word}: {BARE_ARRAY.sub('NDArray[Any]', annotation)} = {default}" for word, annotation, default, _ in words]
     head = f"{indent}def {name}(" + ", ".join(arguments)
     if keywords:
         head += (", " if arguments else "") + "*,\n" + ",\n".join(f"{indent}        {one}" for one in keywords)

@@ -3,6 +3,7 @@
 #include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
+#include <atomic>
 #include <cmath>
 
 #include "libvdbsynth/io/mesh_file.h"
@@ -107,4 +108,46 @@ TEST_CASE("loadTarget: points are no mesh, a level set gives its zero level", "[
     CHECK(loadTarget(folder.path("a.vdb"), TargetKind::Mesh, {}).model.grid == nullptr);
     CHECK(test::thrownBy([&] { loadTarget(folder.path("a.doc"), {}, {}); }).code ==
           int(ErrorCode::InvalidOption));
+}
+
+TEST_CASE("targetOf: what is in memory gives what its file gives", "[pipeline][property]") {
+    const test::TemporaryFolder folder;
+    const Mesh mesh = test::sphereMesh(1, 3);
+    writeMesh(folder.path("a.ply"), MeshFormat::Ply, mesh);  // binary: the same bits
+    const auto same = [](const TextureShape& own, const TextureShape& read) {
+        CHECK(own.kind == read.kind);
+        CHECK(own.triangles == read.triangles);
+        CHECK(own.siteOf == read.siteOf);
+        REQUIRE(own.site.size() == read.site.size());
+        for (std::size_t i = 0; i < own.site.size(); ++i) {
+            REQUIRE(own.site[i].x == read.site[i].x);
+            REQUIRE(own.normal[i].z == read.normal[i].z);
+        }
+    };
+    same(targetOf(mesh, "mesh"), loadTarget(folder.path("a.ply"), TargetKind::Mesh, {}));
+    PointCloud cloud;
+    cloud.points = cloud.normals = mesh.points;
+    cloud.attributes = {{"age", 1, std::vector<float>(mesh.points.size(), 2.f)}};
+    writePointsPly(folder.path("p.ply"), cloud);
+    const TextureShape points = targetOf(cloud, "points");
+    same(points, loadTarget(folder.path("p.ply"), {}, {}));
+    REQUIRE(points.attributes.size() == 1);
+    CHECK(points.attributes[0].values[0] == 2);
+    writeVdb(folder.path("a.vdb"), {test::ball()}, {});
+    const LevelSet model = readVdbModel(folder.path("a.vdb"));
+    const TextureShape level = targetOf(model, "model");
+    same(level, loadTarget(folder.path("a.vdb"), {}, {}));
+    CHECK(level.model.grid == model.grid);
+    // What is missing is said under the name that was given.
+    cloud.normals.clear();
+    test::Said said;
+    targetOf(cloud, "the scan", said.ctx);
+    CHECK(said.noted("the scan: has no normals"));
+    test::Thrown thrown = test::thrownBy([&] {
+        std::atomic<bool> stop{true};
+        RunContext context;
+        context.cancel = &stop;
+        targetOf(model, "model", context);
+    });
+    CHECK(thrown.code == int(ErrorCode::Cancelled));
 }

@@ -3,7 +3,7 @@
 # Usage: tools/dev/make_packages.sh [--of BUILD] [FOLDER]
 #   FOLDER      where the .deb files go, default build/packages/debian
 #   --of BUILD  pack a build folder as it is, instead of building in build/packages
-# VDBSYNTH_PYTHON=ON or OFF in the environment decides on the Python module; default ON where pybind11-dev is installed.
+# VDBSYNTH_PYTHON=ON or OFF in the environment decides on the Python module; default ON where pybind11-dev and libboost-python-dev are.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 build=
@@ -22,9 +22,9 @@ if [ -z "$build" ]; then
   python=${VDBSYNTH_PYTHON:-}
   if [ -z "$python" ]; then
     python=ON
-    if ! dpkg-query -W pybind11-dev >/dev/null 2>&1; then
+    if ! dpkg-query -W pybind11-dev libboost-python-dev >/dev/null 2>&1; then
       python=OFF
-      echo "note: pybind11-dev is not installed: python3-vdbsynth is left out" >&2
+      echo "note: pybind11-dev or libboost-python-dev is not installed: python3-vdbsynth is left out" >&2
     fi
   fi
   options+=(-DVDBSYNTH_PYTHON="$python")

@@ -38,8 +38,8 @@ std::string fingerprintOf(const Plan& plan, const Job& job, FileHashes& hashes);
 class Manifest {
 public:
     /// Reads the file; one that is damaged or of another format is said (Warning) and begun anew: its jobs
-    /// run again, as they do after a change of the program's version (Note). An empty path stands for no file:
-    /// `save` writes none.
+    /// run again, as they do after a change of the program's version (Note). An empty path stands for no
+    /// file: `save` writes none.
     Manifest(const std::string& path, const RunContext& ctx);
 
     /// Null if the job was never done.

@@ -22,7 +22,7 @@ struct Reader {
     Vec3f at, x, y, z;
 
     float operator()(const Vec3f& offset) const {
-        return sampleTrilinear(*field, at + x * offset.x + y * offset.y + z * offset.z);
+        return sampleCubic(*field, at + x * offset.x + y * offset.y + z * offset.z);
     }
 };
 

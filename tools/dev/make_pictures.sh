@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Makes pictures of docs/pictures again with a built program, from models that `make` makes.
-# Usage: make_pictures.sh [PROGRAM [NAME...]]; NAME is synth, synthesis, analogies, patches, relief, texturing, render or fog,
+# Usage: make_pictures.sh [PROGRAM [NAME...]]; NAME is synth, synthesis, analogies, shallow, patches, relief, texturing, render or fog,
 # all by default. Not made here: controls.png and analogy_directions.png, whose maps and sponge were not kept.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 program=$(realpath "${1:-$root/build/release/tools/vdb_synth/vdb_synth}")
 shift || true
 names=("$@")
-[ ${#names[@]} -gt 0 ] || names=(synth synthesis analogies patches relief texturing render fog)
+[ ${#names[@]} -gt 0 ] || names=(synth synthesis analogies shallow patches relief texturing render fog)
 pictures=$root/docs/pictures
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -57,6 +57,20 @@ box[1] = str((int(box[1]) + int(box[4])) // 2)
 print(",".join(box))')
   run crop hollow.vdb -o cut.vdb --box="$box"
   run render "${all[@]:0:5}" cut.vdb -o "$pictures/analogies.png" --size 400x320 --columns 3 --samples 8 --captions none
+  cd ..
+}
+
+# A picture's bricks, and plates.
+draw_shallow() {
+  mkdir -p s && cd s
+  "$root/tools/dev/make_sample.py" bricks bricks.png 128
+  tori 150
+  run convert bricks.png -o A.vdb --height 0.001 --base 12
+  run convert bricks.png -o A2.vdb --height 6 --base 9
+  run analogy A.vdb A2.vdb tori.vdb -o walls.vdb --direction around:z --scale 0.5
+  run make scales S.vdb S2.vdb
+  run analogy S.vdb S2.vdb tori.vdb -o scaly.vdb --direction around:z
+  run render walls.vdb scaly.vdb -o "$pictures/analogies-shallow.png" --size 480x380 --samples 8 --captions none
   cd ..
 }
 

@@ -12,6 +12,7 @@
 #include "tools/vdb_synth/stop_flag.h"
 #include "tools/vdb_synth/surface_json.h"
 #include "tools/vdb_synth/version.h"
+#include "tools/vdb_synth/volume_report.h"
 #include "tools/vdb_synth/wall_report.h"
 
 #include <nlohmann/json.hpp>
@@ -153,9 +154,14 @@ void readRasterOptions(const Arguments& arguments, ModelOptions& options) {
                             : plane == "zx" ? HeightPlane::ZX
                                             : HeightPlane::XY;
     if (arguments.has("threshold")) options.volume.threshold = arguments.real("threshold");
+    if (arguments.has("below")) options.volume.below = arguments.real("below");
     options.volume.labels = arguments.labels("labels");
     if (arguments.has("threshold") && arguments.has("labels"))
         throw Error(ErrorCode::InvalidOption, "--threshold and --labels: give one of them");
+    for (const char* other : {"threshold", "labels"})
+        if (arguments.has("below") && arguments.has(other))
+            throw Error(ErrorCode::InvalidOption,
+                        std::string("--below and --") + other + ": give one of them");
 }
 
 }  // namespace
@@ -231,6 +237,9 @@ void Run::describeOutputs(ModelOutputOptions& outputs) const {
     outputs.metadata = metadata();
     outputs.name = arguments.text("name");
     outputs.half = arguments.has("half");
+    outputs.values = volumeValues(*this);
+    if (arguments.has("values") && !writesVolume(*this))
+        message(context, MessageLevel::Note, "`values` has no effect without a volume to write");
 }
 
 void Run::count(const std::string& name, const nlohmann::json& value) {
@@ -263,6 +272,7 @@ void Run::describe(const LevelSet& result) {
     count("active_voxels", activeVoxels(*result.grid));
     reportWall(*this, result);
     if (!arguments.has("report")) return;
+    reportVolume(*this, result);
     if (result.source) count("input_surface", surfaceJson(*result.source, context));
     count("surface", surfaceJson(levelSetToMesh(*result.grid, {}, context), context));
     count("lost_share", lostShare(*result.grid));

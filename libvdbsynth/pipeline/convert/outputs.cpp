@@ -123,6 +123,8 @@ void writeOne(const LevelSet& model, const std::string& path, const std::string&
         return;
     }
     if (isHeightPath(path)) return writeHeights(model, path, temporary, options, ctx);
+    VolumeFormat volume{};
+    if (volumeFormatOf(path, volume)) return writeModelVolume(model, path, temporary, options.values, ctx);
     if (options.points) {
         PointOptions pointOptions;
         pointOptions.spacing = options.spacing;
@@ -152,12 +154,15 @@ void writeOne(const LevelSet& model, const std::string& path, const std::string&
 void requireOutputPaths(const std::vector<std::string>& paths) {
     for (const std::string& path : paths) {
         MeshFormat format{};
-        if (extensionOf(path) != "vdb" && !isHeightPath(path) && !writableMeshFormatOf(path, format))
+        VolumeFormat volume{};
+        if (extensionOf(path) != "vdb" && !isHeightPath(path) && !writableMeshFormatOf(path, format) &&
+            !volumeFormatOf(path, volume))
             throw Error(
                 ErrorCode::InvalidOption,
                 path +
                     ": unknown extension; outputs are .vdb, .obj, .ply, .stl, .off, .glb, .gltf, .3mf, or "
-                    ".png and .exr for heights");
+                    ".png and .exr for heights, or volumes as " +
+                    kVolumeOutputs);
     }
 }
 

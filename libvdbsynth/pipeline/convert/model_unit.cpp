@@ -1,0 +1,23 @@
+#include "libvdbsynth/pipeline/convert/model_unit.h"
+
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+
+namespace vdbsynth {
+
+std::string unitOf(const openvdb::GridBase& grid) {
+    constexpr std::size_t kLongest = 12;
+    const auto meta = grid.getMetadata<openvdb::StringMetadata>(kUnitKey);
+    const std::string unit = meta ? meta->value() : "";
+    const bool letters = std::all_of(unit.begin(), unit.end(),
+                                     [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); });
+    return letters && unit.size() <= kLongest ? unit : "";
+}
+
+void setUnit(openvdb::GridBase& grid, const std::string& unit) {
+    grid.removeMeta(kUnitKey);
+    if (!unit.empty()) grid.insertMeta(kUnitKey, openvdb::StringMetadata(unit));
+}
+
+}  // namespace vdbsynth

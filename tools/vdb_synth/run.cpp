@@ -5,6 +5,7 @@
 #include "libvdbsynth/base/machine_memory.h"
 #include "libvdbsynth/base/printable_text.h"
 #include "libvdbsynth/io/path.h"
+#include "libvdbsynth/pipeline/convert/model_unit.h"
 #include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
 #include "libvdbsynth/vdb/read/metadata_format.h"
@@ -21,6 +22,7 @@
 #include <chrono>
 #include <cstdio>
 #include <fstream>
+#include <set>
 
 #include <unistd.h>
 
@@ -50,6 +52,7 @@ struct Run::Impl {
     int loads = 0;
     bool quiet = false, verbose = false, reading = false;
     std::vector<std::pair<std::string, std::string>> inputs{};  // name, hash
+    std::set<std::string> units{};                              // that the models read name
     nlohmann::json counts = nlohmann::json::object(), quality{};
     std::chrono::steady_clock::time_point began = std::chrono::steady_clock::now();
 
@@ -213,6 +216,8 @@ LevelSet Run::load(const std::string& path, const ModelOptions& given) {
     const auto model = shared<LevelSet>(
         name, {path}, [&] { return std::make_shared<LevelSet>(loadModel(path, options, context)); });
     noteInput(path);
+    const std::string unit = unitOf(*model);
+    if (!unit.empty()) mImpl->units.insert(unit);
     // What one frame does to its grids does not reach the next.
     return mImpl->frames ? withOwnGrids(*model) : *model;
 }
@@ -238,8 +243,13 @@ void Run::describeOutputs(ModelOutputOptions& outputs) const {
     outputs.name = arguments.text("name");
     outputs.half = arguments.has("half");
     outputs.values = volumeValues(*this);
+    outputs.unit = unit();
     if (arguments.has("values") && !writesVolume(*this))
         message(context, MessageLevel::Note, "`values` has no effect without a volume to write");
+}
+
+std::string Run::unit() const {
+    return mImpl->units.size() == 1 ? *mImpl->units.begin() : "";
 }
 
 void Run::count(const std::string& name, const nlohmann::json& value) {

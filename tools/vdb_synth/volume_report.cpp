@@ -1,6 +1,7 @@
 #include "tools/vdb_synth/volume_report.h"
 
 #include "libvdbsynth/io/volume_file.h"
+#include "libvdbsynth/pipeline/convert/model_unit.h"
 #include "libvdbsynth/pipeline/convert/volume_output.h"
 
 #include <nlohmann/json.hpp>
@@ -26,7 +27,7 @@ bool writesVolume(const Run& run) {
 
 void reportVolume(Run& run, const LevelSet& result) {
     if (!writesVolume(run) || !run.arguments.has("report")) return;
-    const VolumeHead head = volumeHeadOf(result, volumeValues(run));
+    const VolumeHead head = volumeHeadOf(inUnit(result, run.unit()), volumeValues(run));
     const double side = cellOf(head);
     nlohmann::json axes = nlohmann::json::array();
     for (std::size_t axis = 0; axis < 3; ++axis)

@@ -203,7 +203,7 @@ void requireModelPath(const std::string& path) {
 namespace {
 
 // A level set's values are lengths, so they change with the unit.
-FloatGridPtr inUnit(const openvdb::FloatGrid& grid, double scale) {
+FloatGridPtr scaledBy(const openvdb::FloatGrid& grid, double scale) {
     const openvdb::FloatGrid::Ptr scaled = grid.deepCopy();
     for (auto it = scaled->beginValueAll(); it; ++it) it.setValue(float(double(*it) * scale));
     openvdb::tools::changeBackground(scaled->tree(), float(double(grid.background()) * scale));
@@ -221,7 +221,7 @@ LevelSet loaded(const std::string& path, const ModelOptions& options, const RunC
     read.iso = options.iso;
     const std::vector<GridPtr> grids = readVdbGrids(path, ctx);
     LevelSet model = modelFromGrids(path, grids, read, ctx);
-    if (options.unitScale != 1) model.grid = inUnit(*model.grid, options.unitScale);
+    if (options.unitScale != 1) model.grid = scaledBy(*model.grid, options.unitScale);
     model = atVoxelSize(path, model, options, ctx);
     const GridPtr used = pickedGrid(path, grids, read);
     // Steps above make new grids; in another unit the name is wrong.

@@ -15,9 +15,21 @@ std::string unitOf(const openvdb::GridBase& grid) {
     return letters && unit.size() <= kLongest ? unit : "";
 }
 
+std::string unitOf(const LevelSet& model) {
+    return unitOf(*model.grid);
+}
+
 void setUnit(openvdb::GridBase& grid, const std::string& unit) {
     grid.removeMeta(kUnitKey);
     if (!unit.empty()) grid.insertMeta(kUnitKey, openvdb::StringMetadata(unit));
+}
+
+LevelSet inUnit(const LevelSet& model, const std::string& unit) {
+    if (unit.empty() || !unitOf(model).empty()) return model;
+    LevelSet named = model;
+    named.grid = model.grid->copy();
+    setUnit(*named.grid, unit);
+    return named;
 }
 
 }  // namespace vdbsynth

@@ -9,6 +9,7 @@
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/raster_file.h"
+#include "libvdbsynth/pipeline/convert/model_unit.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/convert/attribute_grids.h"
 #include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
@@ -202,7 +203,7 @@ void writeModel(const LevelSet& model, const std::vector<std::string>& paths,
     withThreads(ctx, [&] {
         validate(options);
         requireModel(&model, "the model", ctx);
-        writeAll(model, paths, options, outputs, ctx);
+        writeAll(inUnit(model, options.unit), paths, options, outputs, ctx);
     });
 }
 

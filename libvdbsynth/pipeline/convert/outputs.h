@@ -18,6 +18,7 @@ struct ModelOutputOptions {
     double spacing = 1;     ///< [voxels] between points, 0.25..100
     HeightPlane plane = HeightPlane::XY;  ///< of height images
     double height = 0;                    ///< [world] height of white in a .png; 0: that of the highest point
+    std::string unit;  ///< of the world, for a model whose file named none (model_unit.h); empty: unknown
     VolumeValues values = VolumeValues::Inside;  ///< of volumes
     std::vector<GridPtr> extraGrids;             ///< written next to `surface` into .vdb outputs
     std::string name;                            ///< of the level set's grid in .vdb outputs; empty: surface

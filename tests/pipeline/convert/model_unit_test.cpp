@@ -21,7 +21,13 @@ TEST_CASE("unitOf, setUnit: recorded, removed, nothing but letters", "[pipeline]
         setUnit(*grid, hostile);
         CHECK(unitOf(*grid).empty());
     }
-    grid->removeMeta(kUnitKey);
+    LevelSet model;
+    model.grid = grid;
+    setUnit(*grid, "mm");
+    CHECK(unitOf(inUnit(model, "um")) == "mm");
+    setUnit(*grid, "");
+    CHECK(unitOf(inUnit(model, "um")) == "um");
+    CHECK(unitOf(model).empty());
     grid->insertMeta(kUnitKey, openvdb::Int32Metadata(3));
     CHECK(unitOf(*grid).empty());
 }

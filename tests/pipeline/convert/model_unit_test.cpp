@@ -46,6 +46,7 @@ TEST_CASE("loadModel: a VDB's unit stays with resampling and bands, and goes wit
     const LevelSet resampled = loadModel(folder.path("b.vdb"), options);
     CHECK(unitOf(*resampled.grid) == "um");
     CHECK(unitOf(*withHalfWidth(resampled, 5).grid) == "um");
+    options.voxelSize = 0;
     options.unitScale = 0.001;
     CHECK(unitOf(*loadModel(folder.path("b.vdb"), options).grid).empty());
 }

@@ -27,6 +27,7 @@ using LabelRange = std::pair<double, double>;
 
 struct VolumeOptions {
     std::optional<double> threshold;  ///< solid where the value is above it
+    std::optional<double> below;      ///< solid where the value is below it, as of distances
     std::vector<LabelRange> labels;   ///< solid where the value is one of these
     double pixelSize = 0;  ///< [world] of the smallest side of a sample's cell; 0: the file's, else 1
     Vec3d pixelSides{

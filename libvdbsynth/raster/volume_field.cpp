@@ -165,8 +165,12 @@ std::vector<LabelRange> chooseLabels(const std::string& name, const RasterRange&
 void validate(const VolumeOptions& options) {
     if (options.threshold && !options.labels.empty())
         throw Error(ErrorCode::InvalidOption, "`threshold` and `labels`: give one of them");
-    requireOption(!options.threshold || std::isfinite(*options.threshold), "threshold",
-                  options.threshold ? exactText(*options.threshold) : "", "a number");
+    if (options.below && (options.threshold || !options.labels.empty()))
+        throw Error(ErrorCode::InvalidOption, std::string("`below` and `") +
+                                                  (options.threshold ? "threshold" : "labels") +
+                                                  "`: give one of them");
+    for (const auto& [value, field] : {std::pair(options.threshold, "threshold"), {options.below, "below"}})
+        requireOption(!value || std::isfinite(*value), field, value ? exactText(*value) : "", "a number");
     for (const LabelRange& range : options.labels)
         requireOption(range.first <= range.second, "labels",
                       exactText(range.first) + ".." + exactText(range.second),
@@ -174,26 +178,47 @@ void validate(const VolumeOptions& options) {
     requirePixelSize(options.pixelSize, options.pixelSides);
 }
 
+namespace {
+
+// One channel, solid where its values are high; the raster itself if it is that, else made in `own`.
+const Raster& risingInside(const Raster& given, bool below, Raster& own) {
+    if (given.channels == 1 && !below) return given;
+    own = luminance(given);
+    if (below)
+        for (float& value : own.values) value = -value;
+    return own;
+}
+
+// @param threshold  of the values as risingInside returns them
+void requireSurface(const std::string& name, const RasterRange& range, double threshold, bool below) {
+    if (threshold >= range.minimum && threshold < range.maximum) return;
+    throw Error(ErrorCode::Unusable,
+                (below ? "`below` " + rounded(-threshold) : "`threshold` " + rounded(threshold)) +
+                    ": no surface there; the values of " + name + " range from " +
+                    rounded(below ? -range.maximum : range.minimum) + " to " +
+                    rounded(below ? -range.minimum : range.maximum));
+}
+
+}  // namespace
+
 RasterField volumeField(const std::string& name, const Raster& given, const VolumeOptions& options,
                         const RunContext& ctx) {
     validate(options);
-    requireMemory(ctx, double(given.sampleCount()) * 12, name, "crop or shrink it first");
+    requireMemory(ctx, double(given.sampleCount()) * (options.below ? 16 : 12), name,
+                  "crop or shrink it first");
     const Vec3d cell = cellSides(name, given, /* image= */ false, options.pixelSize, options.pixelSides);
     Stage stage(ctx, "volume to field", 1);
-    const Raster colourless = given.channels == 1 ? Raster() : luminance(given);
-    const Raster& raster = given.channels == 1 ? given : colourless;
+    Raster own;
+    const Raster& raster = risingInside(given, options.below.has_value(), own);
     const RasterRange range = rangeOf(raster);
     if (range.infinite > 0)
         throw Error(ErrorCode::BadData,
                     name + ": " + std::to_string(range.infinite) + " values are infinite");
     if (range.missing == raster.values.size()) throw Error(ErrorCode::EmptyInput, name + ": has no data");
     RasterField result;
-    if (options.threshold) {
-        const double t = *options.threshold;
-        if (!(t >= range.minimum && t < range.maximum))
-            throw Error(ErrorCode::Unusable,
-                        "`threshold` " + rounded(t) + ": no surface there; the values of " + name +
-                            " range from " + rounded(range.minimum) + " to " + rounded(range.maximum));
+    if (options.threshold || options.below) {
+        const double t = options.below ? -*options.below : *options.threshold;
+        requireSurface(name, range, t, options.below.has_value());
         result.field = thresholdField(raster, range, t, ctx);
         // More values are samples of something smooth.
         if (range.distinct.size() == 2)

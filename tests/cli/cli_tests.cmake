@@ -41,6 +41,7 @@ add_cli_test(rival_test Rival)
 add_cli_test(synth_test Synth)
 add_cli_test(texture_test Texture Pictures Hostile)
 add_cli_test(threemf_test ThreeMf)
+add_cli_test(volumes_test Outputs Readers Scans)
 add_cli_test(programs_test Programs)
 
 # Packs the build folder and makes a bare Debian: tools/run_tests.sh --all.

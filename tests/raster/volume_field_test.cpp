@@ -27,6 +27,37 @@ TEST_CASE("volumeField: a threshold's surface is that of linear interpolation, w
     }
 }
 
+TEST_CASE("volumeField: below a value is above the opposite value of the opposite samples",
+          "[raster][oracle]") {
+    const auto distance = [](int x, int y, int z) {
+        return float(std::sqrt((x - 9.3) * (x - 9.3) + (y - 10) * (y - 10) + (z - 10) * (z - 10)) - 6);
+    };
+    VolumeOptions below, above;
+    below.below = 0.5;
+    above.threshold = -0.5;
+    const RasterField one = volumeField("a", rasterOf({20, 20, 20}, distance), below);
+    const RasterField other = volumeField(
+        "a", rasterOf({20, 20, 20}, [&](int x, int y, int z) { return -distance(x, y, z); }), above);
+    CHECK(crossing(one.field, {9, 10, 10}, 0) == Approx(15.8).margin(0.01));
+    bool same = true;
+    forEachVoxel(one.domain, [&](const Index3& p) { same = same && one.field.at(p) == other.field.at(p); });
+    CHECK(same);
+    below.below = -7;
+    const test::Thrown none = test::thrownBy([&] {
+        volumeField("a", rasterOf({20, 20, 20}, distance), below);
+    });
+    CHECK(none.code == int(ErrorCode::Unusable));
+    CHECK(test::contains(none.message, "`below` -7: no surface there; the values of a range from -5.7 to"));
+    below.labels = {{1, 2}};
+    CHECK(test::thrownBy([&] { validate(below); }).message == "`below` and `labels`: give one of them");
+    below.labels.clear();
+    below.threshold = 1;
+    CHECK(test::thrownBy([&] { validate(below); }).message == "`below` and `threshold`: give one of them");
+    below.threshold.reset();
+    below.below = std::nan("");
+    CHECK(test::thrownBy([&] { validate(below); }).code == int(ErrorCode::InvalidOption));
+}
+
 TEST_CASE("volumeField: cells that are no cubes are resampled to their smallest side", "[raster][oracle]") {
     Raster raster = rasterOf({20, 20, 11}, [](int x, int y, int z) {
         return float(12 - std::sqrt((x - 10) * (x - 10) + (y - 10) * (y - 10) + (2 * z - 10) * (2 * z - 10)));

@@ -3,6 +3,7 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/raster_file.h"
+#include "libvdbsynth/io/volume_file.h"
 #include "libvdbsynth/pipeline/convert/outputs.h"
 
 #include <nlohmann/json.hpp>
@@ -12,9 +13,11 @@
 namespace vdbsynth::cli {
 namespace {
 
-// --as chooses what to write where an extension allows several kinds; volume: reads an image as a volume.
-void requireKind(const std::string& as, const std::string& path) {
+// --as says what is written; volume also reads an image as a volume, which may then be written as anything.
+void requireKind(const std::string& as, const std::string& input, const std::string& path) {
     const std::string extension = extensionOf(path);
+    VolumeFormat format{};
+    const bool volume = volumeFormatOf(path, format);
     const bool heights = extension == "png" || extension == "exr";
     const auto require = [&](bool good, const char* written) {
         if (!good) throw Error(ErrorCode::InvalidOption, "--as " + as + ": must be written to " + written);
@@ -22,7 +25,11 @@ void requireKind(const std::string& as, const std::string& path) {
     if (as == "points") require(extension == "ply", ".ply");
     if (as == "levelset") require(extension == "vdb", ".vdb");
     if (as == "heightfield") require(heights, ".png or .exr");
-    if (as == "mesh") require(!heights && extension != "vdb", ".obj, .ply, .stl, .off, .glb, .gltf or .3mf");
+    if (as == "volume")
+        require(volume || isRasterPath(input),
+                (std::string(kVolumeOutputs) + ", unless an image is read").c_str());
+    if (as == "mesh")
+        require(!heights && !volume && extension != "vdb", ".obj, .ply, .stl, .off, .glb, .gltf or .3mf");
 }
 
 // --height is of images, as inputs and as outputs.
@@ -44,7 +51,7 @@ void convert(Run& run) {
     outputs.height = modelOptions.heights.height;
     const std::string as = run.arguments.text("as");
     outputs.points = as == "points";
-    for (const std::string& path : paths) requireKind(as, path);
+    for (const std::string& path : paths) requireKind(as, run.arguments.inputs[0], path);
     modelOptions.carry = true;
     modelOptions.imageAsVolume = as == "volume";
     outputs.sharp = modelOptions.keepSource = modelOptions.solid.exact = run.arguments.has("sharp");

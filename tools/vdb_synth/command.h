@@ -72,7 +72,9 @@ public:
     void noteInput(const std::string& path);
     /// File metadata of every VDB output.
     VdbMetadata metadata() const;
-    /// Metadata, name and precision of .vdb outputs; after all inputs are read.
+    /// The unit of the world that the models read name, empty if none does or they name several.
+    std::string unit() const;
+    /// Metadata, name and precision of .vdb outputs, values and unit of volumes; after all inputs are read.
     void describeOutputs(ModelOutputOptions& outputs) const;
     /// Adds a number or text to the report's "counts".
     void count(const std::string& name, const nlohmann::json& value);

@@ -122,6 +122,14 @@ std::vector<Option> inputTable() {
             .sets({"halfFloats"})
             .says("write the level set and the transferred grids at half precision; source maps stay exact")
             .takenBy({"convert", "crop", "synth", "analogy", "repeat", "make", "relief"}),
+        choice("values", "VALUES",
+               {{"inside", "1 in the solid, 0 outside, as bytes"},
+                {"distance", "world units, negative inside, to the end of the band"},
+                {"density", "fog, 0.5 at the surface"}})
+            .in(Group::Output)
+            .says("what a volume output holds")
+            .initially("inside")
+            .takenBy({"convert", "crop", "synth", "analogy", "repeat", "make", "relief"}),
     };
 }
 
@@ -166,6 +174,10 @@ std::vector<Option> rasterTable() {
             .in(Group::Raster)
             .says("a volume (npy, tif, vti, nii ...) is solid above this value")
             .takenBy(kModel),
+        real("below", "VALUE")
+            .in(Group::Raster)
+            .says("a volume is solid below this value, such as 0 of distances")
+            .takenBy(kModel),
         option(Kind::Labels, "labels", "LIST")
             .in(Group::Raster)
             .says("a volume is solid where it has one of these values, for example 1,4,10-20")
@@ -181,7 +193,7 @@ std::vector<Option> outputTable() {
         output("output", "FILE", {})
             .shortly('o')
             .says("file to write, its kind by extension: .vdb, .obj, .ply, .stl, .off, .glb, .gltf, .3mf; "
-                  "heights as .png or .exr")
+                  "heights as .png or .exr; volumes as .npy, .tif, .vti, .nii or .nii.gz")
             .repeatable()
             .takenBy({"convert", "crop", "synth", "analogy", "repeat", "make", "relief"})
             .butFor(
@@ -221,7 +233,7 @@ std::vector<Option> outputTable() {
                 {"points", ""},
                 {"levelset", ""},
                 {"heightfield", ""},
-                {"volume", "read an image as a volume"}})
+                {"volume", "also reads an image as a volume"}})
             .in(Group::Output)
             .orAnExtension()
             .says("what to write")

@@ -5,6 +5,7 @@
 #include "libvdbsynth/base/machine_memory.h"
 #include "libvdbsynth/base/printable_text.h"
 #include "libvdbsynth/io/path.h"
+#include "libvdbsynth/pipeline/convert/model_unit.h"
 #include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
 #include "libvdbsynth/vdb/read/metadata_format.h"
@@ -12,6 +13,7 @@
 #include "tools/vdb_synth/stop_flag.h"
 #include "tools/vdb_synth/surface_json.h"
 #include "tools/vdb_synth/version.h"
+#include "tools/vdb_synth/volume_report.h"
 #include "tools/vdb_synth/wall_report.h"
 
 #include <nlohmann/json.hpp>
@@ -20,6 +22,7 @@
 #include <chrono>
 #include <cstdio>
 #include <fstream>
+#include <set>
 
 #include <unistd.h>
 
@@ -49,6 +52,7 @@ struct Run::Impl {
     int loads = 0;
     bool quiet = false, verbose = false, reading = false;
     std::vector<std::pair<std::string, std::string>> inputs{};  // name, hash
+    std::set<std::string> units{};                              // that the models read name
     nlohmann::json counts = nlohmann::json::object(), quality{};
     std::chrono::steady_clock::time_point began = std::chrono::steady_clock::now();
 
@@ -153,9 +157,14 @@ void readRasterOptions(const Arguments& arguments, ModelOptions& options) {
                             : plane == "zx" ? HeightPlane::ZX
                                             : HeightPlane::XY;
     if (arguments.has("threshold")) options.volume.threshold = arguments.real("threshold");
+    if (arguments.has("below")) options.volume.below = arguments.real("below");
     options.volume.labels = arguments.labels("labels");
     if (arguments.has("threshold") && arguments.has("labels"))
         throw Error(ErrorCode::InvalidOption, "--threshold and --labels: give one of them");
+    for (const char* other : {"threshold", "labels"})
+        if (arguments.has("below") && arguments.has(other))
+            throw Error(ErrorCode::InvalidOption,
+                        std::string("--below and --") + other + ": give one of them");
 }
 
 }  // namespace
@@ -207,6 +216,8 @@ LevelSet Run::load(const std::string& path, const ModelOptions& given) {
     const auto model = shared<LevelSet>(
         name, {path}, [&] { return std::make_shared<LevelSet>(loadModel(path, options, context)); });
     noteInput(path);
+    const std::string unit = unitOf(*model);
+    if (!unit.empty()) mImpl->units.insert(unit);
     // What one frame does to its grids does not reach the next.
     return mImpl->frames ? withOwnGrids(*model) : *model;
 }
@@ -231,6 +242,14 @@ void Run::describeOutputs(ModelOutputOptions& outputs) const {
     outputs.metadata = metadata();
     outputs.name = arguments.text("name");
     outputs.half = arguments.has("half");
+    outputs.values = volumeValues(*this);
+    outputs.unit = unit();
+    if (arguments.has("values") && !writesVolume(*this))
+        message(context, MessageLevel::Note, "`values` has no effect without a volume to write");
+}
+
+std::string Run::unit() const {
+    return mImpl->units.size() == 1 ? *mImpl->units.begin() : "";
 }
 
 void Run::count(const std::string& name, const nlohmann::json& value) {
@@ -263,6 +282,7 @@ void Run::describe(const LevelSet& result) {
     count("active_voxels", activeVoxels(*result.grid));
     reportWall(*this, result);
     if (!arguments.has("report")) return;
+    reportVolume(*this, result);
     if (result.source) count("input_surface", surfaceJson(*result.source, context));
     count("surface", surfaceJson(levelSetToMesh(*result.grid, {}, context), context));
     count("lost_share", lostShare(*result.grid));

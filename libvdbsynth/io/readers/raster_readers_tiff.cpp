@@ -41,6 +41,13 @@ void imageJSpacing(const StackDescription& description, const TiffPage& page, Ra
         if (size > 1e-30 && size < 1e30) raster.spacing[axis] = size;
     }
     if (description.spacing[2] > 0) raster.spacing.z = description.spacing[2];
+    // libtiff gives resolutions as floats; where they say the same as the distance of slices, it is exact.
+    for (int axis = 0; axis < 2; ++axis)
+        if (std::abs(raster.spacing[axis] - raster.spacing.z) < 1e-6 * raster.spacing.z)
+            raster.spacing[axis] = raster.spacing.z;
+    for (int axis = 0; axis < 3; ++axis)
+        if (description.origin[axis] != 0)
+            raster.origin[axis] = -description.origin[axis] * raster.spacing[axis];
     raster.unit = description.unit;
     if (raster.unit.empty() && !screen)
         raster.unit = page.resolutionUnit == kInch ? "in" : page.resolutionUnit == kCentimetre ? "cm" : "";
@@ -63,7 +70,8 @@ void readSpacing(const std::string& path, const StackDescription& description, c
     else
         return;
     const Vec3d& s = raster.spacing;
-    if (s.x == 1 && s.y == 1 && s.z == 1 && raster.unit.empty()) return;
+    const bool moved = length(Vec3d{description.origin[0], description.origin[1], description.origin[2]}) > 0;
+    if (s.x == 1 && s.y == 1 && s.z == 1 && raster.unit.empty() && !moved) return;
     raster.knownSpacing = true;
     const bool guessed = raster.size.z > 1 && description.spacing[2] <= 0;
     const bool ome = description.kind == Kind::Ome;
@@ -74,7 +82,7 @@ void readSpacing(const std::string& path, const StackDescription& description, c
                 (!guessed ? ""
                  : ome    ? ", which has no distance of slices: that of columns is taken"
                           : ", which has no distance of slices: 1 is taken, as ImageJ does") +
-                "; `pixelSize` sets them");
+                "; `pixelSize` sets them" + (moved ? "; its description places it" : ""));
 }
 
 // The opacity of a single image in a page of its own, as GDAL writes it.

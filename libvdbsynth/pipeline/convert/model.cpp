@@ -12,6 +12,7 @@
 #include "libvdbsynth/io/raster_file.h"
 #include "libvdbsynth/pipeline/convert/field_model_steps.h"
 #include "libvdbsynth/pipeline/convert/model_steps.h"
+#include "libvdbsynth/pipeline/convert/model_unit.h"
 #include "libvdbsynth/vdb/convert/attribute_grids.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
 #include "libvdbsynth/vdb/redistance.h"
@@ -143,10 +144,12 @@ LevelSet loadRaster(const std::string& path, const ModelOptions& options, const 
         raster.unit.clear();
     }
     const bool image = !raster.stack && raster.size.z == 1 && !options.imageAsVolume;
-    if (image && (options.volume.threshold || !options.volume.labels.empty()))
+    if (image && (options.volume.threshold || options.volume.below || !options.volume.labels.empty()))
         throw Error(ErrorCode::InvalidOption,
-                    std::string(options.volume.threshold ? "`threshold`" : "`labels`") + ": " + path +
-                        " is an image; with `imageAsVolume` it is a volume of one slice");
+                    std::string(options.volume.threshold ? "`threshold`"
+                                : options.volume.below   ? "`below`"
+                                                         : "`labels`") +
+                        ": " + path + " is an image; with `imageAsVolume` it is a volume of one slice");
     HeightOptions heights = options.heights;
     heights.voxelSize = options.voxelSize;
     heights.resolution = options.resolution;
@@ -158,7 +161,9 @@ LevelSet loadRaster(const std::string& path, const ModelOptions& options, const 
                                     field.voxelSize, path, "no part of it is solid", ctx);
     sayLostSamples(path, field, *model.grid, ctx);
     placeInWorld(field, *model.grid);
-    return image ? model : atVoxelSize(path, model, options, ctx);
+    if (!image) model = atVoxelSize(path, model, options, ctx);
+    setUnit(*model.grid, raster.unit);
+    return model;
 }
 
 }  // namespace
@@ -198,7 +203,7 @@ void requireModelPath(const std::string& path) {
 namespace {
 
 // A level set's values are lengths, so they change with the unit.
-FloatGridPtr inUnit(const openvdb::FloatGrid& grid, double scale) {
+FloatGridPtr scaledBy(const openvdb::FloatGrid& grid, double scale) {
     const openvdb::FloatGrid::Ptr scaled = grid.deepCopy();
     for (auto it = scaled->beginValueAll(); it; ++it) it.setValue(float(double(*it) * scale));
     openvdb::tools::changeBackground(scaled->tree(), float(double(grid.background()) * scale));
@@ -216,11 +221,13 @@ LevelSet loaded(const std::string& path, const ModelOptions& options, const RunC
     read.iso = options.iso;
     const std::vector<GridPtr> grids = readVdbGrids(path, ctx);
     LevelSet model = modelFromGrids(path, grids, read, ctx);
-    if (options.unitScale != 1) model.grid = inUnit(*model.grid, options.unitScale);
+    if (options.unitScale != 1) model.grid = scaledBy(*model.grid, options.unitScale);
     model = atVoxelSize(path, model, options, ctx);
+    const GridPtr used = pickedGrid(path, grids, read);
+    // Steps above make new grids; in another unit the name is wrong.
+    setUnit(*model.grid, options.unitScale == 1 ? unitOf(*used) : "");
     if (options.carry) {
         // All except the one that became the model; fog that a level set was made of stays among them.
-        const GridPtr used = pickedGrid(path, grids, read);
         const bool fog =
             options.iso && used->getGridClass() != openvdb::GRID_LEVEL_SET && used->getName() != kSurfaceName;
         std::copy_if(grids.begin(), grids.end(), std::back_inserter(model.attributes),
@@ -266,6 +273,7 @@ LevelSet withHalfWidth(const LevelSet& model, double halfWidth, const RunContext
     result.grid =
         withThreads(ctx, [&] { return rebuildLevelSet(*model.grid, float(halfWidth), "the model", ctx); });
     stampLevelSet(result);
+    setUnit(*result.grid, unitOf(*model.grid));
     return result;
 }
 

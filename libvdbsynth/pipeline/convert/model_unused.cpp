@@ -31,6 +31,7 @@ void noteUnusedOptions(const std::string& path, const ModelOptions& options, con
     note(!options.grid.empty(), !faces, "grid");
     note(options.solid.open == OpenMesh::Shell, faces, "open");
     note(options.volume.threshold.has_value(), kind == Kind::Raster, "threshold");
+    note(options.volume.below.has_value(), kind == Kind::Raster, "below");
     note(!options.volume.labels.empty(), kind == Kind::Raster, "labels");
     note(options.heights.pixelSize > 0 || options.heights.pixelSides.x > 0, kind == Kind::Raster,
          "pixelSize");

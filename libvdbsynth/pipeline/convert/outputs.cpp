@@ -9,6 +9,7 @@
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/raster_file.h"
+#include "libvdbsynth/pipeline/convert/model_unit.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/convert/attribute_grids.h"
 #include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
@@ -123,6 +124,8 @@ void writeOne(const LevelSet& model, const std::string& path, const std::string&
         return;
     }
     if (isHeightPath(path)) return writeHeights(model, path, temporary, options, ctx);
+    VolumeFormat volume{};
+    if (volumeFormatOf(path, volume)) return writeModelVolume(model, path, temporary, options.values, ctx);
     if (options.points) {
         PointOptions pointOptions;
         pointOptions.spacing = options.spacing;
@@ -152,12 +155,15 @@ void writeOne(const LevelSet& model, const std::string& path, const std::string&
 void requireOutputPaths(const std::vector<std::string>& paths) {
     for (const std::string& path : paths) {
         MeshFormat format{};
-        if (extensionOf(path) != "vdb" && !isHeightPath(path) && !writableMeshFormatOf(path, format))
+        VolumeFormat volume{};
+        if (extensionOf(path) != "vdb" && !isHeightPath(path) && !writableMeshFormatOf(path, format) &&
+            !volumeFormatOf(path, volume))
             throw Error(
                 ErrorCode::InvalidOption,
                 path +
                     ": unknown extension; outputs are .vdb, .obj, .ply, .stl, .off, .glb, .gltf, .3mf, or "
-                    ".png and .exr for heights");
+                    ".png and .exr for heights, or volumes as " +
+                    kVolumeOutputs);
     }
 }
 
@@ -197,7 +203,7 @@ void writeModel(const LevelSet& model, const std::vector<std::string>& paths,
     withThreads(ctx, [&] {
         validate(options);
         requireModel(&model, "the model", ctx);
-        writeAll(model, paths, options, outputs, ctx);
+        writeAll(inUnit(model, options.unit), paths, options, outputs, ctx);
     });
 }
 

@@ -65,7 +65,8 @@ void write(const LevelSet& model, const std::vector<std::string>& paths,
 }
 
 const std::vector<std::string> kAllNames{"o.vdb", "o.obj",  "o.ply", "o.stl", "o.off",
-                                         "o.glb", "o.gltf", "o.3mf", "o.png", "o.exr"};
+                                         "o.glb", "o.gltf", "o.3mf", "o.png", "o.exr",
+                                         "o.npy", "o.tif",  "o.vti", "o.nii", "o.nii.gz"};
 
 }  // namespace
 

@@ -12,7 +12,8 @@ namespace {
 using Words = std::vector<std::string>;
 
 const Words kImages{"png", "jpg", "jpeg", "pgm", "ppm", "pnm", "tif", "tiff", "exr"};
-const Words kMeshOutputs{"vdb", "obj", "ply", "stl", "off", "glb", "gltf", "3mf", "png", "exr"};
+const Words kMeshOutputs{"vdb", "obj", "ply", "stl", "off", "glb", "gltf",  "3mf",
+                         "png", "exr", "npy", "tif", "vti", "nii", "nii.gz"};
 
 Suggestions files(const Words& extensions) {
     Suggestions made;

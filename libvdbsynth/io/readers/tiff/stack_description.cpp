@@ -26,6 +26,12 @@ void parseLength(std::string_view word, double& length) {
     if (parseReal(word, value) && value != 0) length = std::abs(value);
 }
 
+// A place in cells; one that is no usable number counts as zero.
+void parseOrigin(std::string_view word, double& origin) {
+    double value = 0;
+    if (parseReal(word, value) && std::abs(value) < 1e9) origin = value;
+}
+
 // A unit as letters: files write micrometres in many ways, as escapes and in several encodings.
 std::string unitOf(std::string_view word) {
     std::string letters;
@@ -58,6 +64,8 @@ StackDescription parseImageJ(std::string_view text) {
         if (key == "slices") parseCount(value, result.slices);
         if (key == "frames") parseCount(value, result.frames);
         if (key == "spacing") parseLength(value, result.spacing[2]);
+        for (const char axis : {'x', 'y', 'z'})
+            if (key == std::string(1, axis) + "origin") parseOrigin(value, result.origin[axis - 'x']);
         if (key == "unit") result.unit = unitOf(value);
         if (key == "cf") parseCount(value, function);
         if (key == "c0") parseReal(value, result.calibrationOffset);

@@ -15,6 +15,7 @@ struct StackDescription {
     std::int64_t images = 1;        // ImageJ: pages in all
     std::string order = "CZT";      // of pages, the fastest first
     double spacing[3] = {0, 0, 0};  // along columns, rows, slices; 0: not given
+    double origin[3] = {0, 0, 0};   // ImageJ: where the world's zero lies, in cells from the first sample
     std::string unit;               // of the spacing: "um", "mm"; empty: none, or pixels
     bool calibrated = false;        // ImageJ: values are offset + factor * stored ones
     double calibrationOffset = 0, calibrationFactor = 1;

@@ -52,7 +52,7 @@ add_cli_test(night_disk_test FullDisk FullDiskOfBatch Folders Memory)
 add_cli_test(night_shift_test Signals TwoBatches Soak Threads JobFiles)
 foreach(class "night_disk_test FullDisk" "night_disk_test FullDiskOfBatch" "night_disk_test Folders" "night_disk_test Memory"
         "night_shift_test Signals" "night_shift_test TwoBatches" "night_shift_test Soak" "night_shift_test Threads" "night_shift_test JobFiles")
-  set_tests_properties("cli: ${class}" PROPERTIES LABELS "all;slow")
+  set_tests_properties("cli: ${class}" PROPERTIES LABELS "all;slow" TIMEOUT 7200)
 endforeach()
 
 # A short run of every fuzz target; tools/dev/fuzz.sh runs them for longer.

@@ -77,9 +77,8 @@ class MemoryGroup:
         try:
             self.folder.mkdir()
             (self.folder / limit).write_text(str(bytes_))
-            for swap in ("memory.swap.max",):
-                if (self.folder / swap).exists():
-                    (self.folder / swap).write_text("0")
+            if (self.folder / "memory.swap.max").exists():
+                (self.folder / "memory.swap.max").write_text("0")
         except OSError as error:
             self.__exit__()
             raise unittest.SkipTest(f"a control group with a limit of memory cannot be made here: {error}")

@@ -65,7 +65,7 @@ MIX = [["convert", "b.vdb", "-o", "x.obj", "-o", "x.vdb", "-o", "x.glb", "--repo
        ["texture", "b.ply", "i.ppm", "-o", "x.ply"],
        ["relief", "i.ppm", "b.vdb", "-o", "x.vdb", "--draft"],
        ["patch", "p.ply", "-o", "x.ply", "--size", "2x,2x", "--draft"],
-       ["analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "x.vdb", "-o", "x.stl"]]
+       ["analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "x.vdb", "-o", "x.stl", "--draft"]]
 
 
 class Signals(NightTest):
@@ -122,7 +122,7 @@ class Signals(NightTest):
             for name in whole[i]:
                 self.write(name, OLD)
             process = self.start(*MIX[i], "-q")
-            time.sleep(draw.uniform(0, 1.2 * seconds[i]))
+            time.sleep(draw.uniform(0, seconds[i]))
             kind, to = self.send(draw, process)
             code, what = self.ended(kind, to, process)
             codes.append(code)
@@ -245,7 +245,7 @@ class TwoBatches(NightTest):
 
 class Soak(NightTest):
     SINGLE = [("convert", ["b.vdb"], ".obj", {}), ("synth", ["b.vdb"], ".vdb", {"size": "2x,1x,1x", "draft": True}),
-              ("render", ["b.vdb"], ".png", {"size": "96x64"}), ("analogy", ["a.vdb", "a2.vdb", "b.vdb"], ".vdb", {}),
+              ("render", ["b.vdb"], ".png", {"size": "96x64"}), ("analogy", ["a.vdb", "a2.vdb", "b.vdb"], ".vdb", {"draft": True}),
               ("mask", ["ball"], ".vdb", {"center": "0,0,0", "radius": 9, "voxel-size": 1}), ("info", ["b.vdb"], ".json", {}),
               ("patch", ["p.ply"], ".ply", {"size": "2x,2x", "draft": True}), ("texture", ["b.ply", "i.ppm"], ".ply", {"draft": True})]
 
@@ -281,7 +281,7 @@ class Soak(NightTest):
 
 
 class Threads(NightTest):
-    METHODS = [*MIX,
+    METHODS = [*MIX, ["analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "x.vdb", "--source-map"],
                ["synth", "b.vdb", "-o", "x.vdb", "-o", "x.ply", "--size", "2x,1x,1x", "--source-map", "m.vdb"],
                ["synth", "b.vdb", "-o", "x.vdb", "--size", "2x,1x,1x", "--method", "exact"],
                ["patch", "p.ply", "-o", "x.ply", "-o", "x.vdb", "--size", "2x,2x"],

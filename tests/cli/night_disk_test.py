@@ -6,7 +6,7 @@ import subprocess
 import time
 import unittest
 
-from night_shift import MemoryGroup, PAGE, ReadOnly, SmallDisk
+from night_shift import MemoryGroup, PAGE, PATIENCE, ReadOnly, SmallDisk
 from support import PROGRAM, CliTest
 
 OLD = b"old\n"
@@ -17,6 +17,10 @@ class NightTest(CliTest):
         super().setUp()
         os.mkdir(self.path("disk"))
         self.ok("make", "balls", "b.vdb", "--resolution", 32, "-q")
+
+    def run_tool(self, *words, **options):
+        options.setdefault("timeout", PATIENCE)
+        return super().run_tool(*words, **options)
 
     def temporaries(self):
         return [os.path.join(folder, name) for folder, _, names in os.walk(self.folder) for name in names if name.endswith(".tmp")]
@@ -100,12 +104,12 @@ class FullDisk(NightTest):
     def test_streams(self):
         with open("/dev/full", "w") as full:
             for words in (["info", "b.vdb"], ["convert", "b.vdb", "-o", "-.ply"], ["batch", "--schema"], ["synth", "--help"]):
-                result = subprocess.run([PROGRAM, *words], cwd=self.folder, stdout=full, stderr=subprocess.PIPE, text=True, timeout=240)
+                result = subprocess.run([PROGRAM, *words], cwd=self.folder, stdout=full, stderr=subprocess.PIPE, text=True, timeout=PATIENCE)
                 self.assertEqual(result.returncode, 3, f"{words}: {result.stderr}")
                 self.assertIn("standard output", self.error_line(result))
             # Nobody hears it: the exit code says it all the same.
             for words, code in ((["info", "none.vdb"], 3), (["convert", "b.vdb", "-o", "x.ply"], 0)):
-                self.assertEqual(subprocess.run([PROGRAM, *words], cwd=self.folder, stderr=full, timeout=240).returncode, code)
+                self.assertEqual(subprocess.run([PROGRAM, *words], cwd=self.folder, stderr=full, timeout=PATIENCE).returncode, code)
         self.assertEqual(self.files(), ["b.vdb", "disk", "x.ply"])
 
 
@@ -202,7 +206,7 @@ class Folders(NightTest):
     def started(self, folder, *words):
         """A long run that has reserved its output in `folder`, and the work before it."""
         process = subprocess.Popen([PROGRAM, *words], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        end = time.monotonic() + 120
+        end = time.monotonic() + PATIENCE
         while not [name for name in os.listdir(folder) if name.endswith(".tmp")]:
             self.assertIsNone(process.poll(), "it ended too early")
             self.assertLess(time.monotonic(), end)
@@ -210,7 +214,7 @@ class Folders(NightTest):
         return process
 
     def ended(self, process, says):
-        _, words = process.communicate(timeout=240)
+        _, words = process.communicate(timeout=PATIENCE)
         self.assertEqual(process.returncode, 3, words)
         lines = [line for line in words.splitlines() if "error:" in line]
         self.assertEqual(len(lines), 1, words)
@@ -248,13 +252,13 @@ class Folders(NightTest):
                   {"name": "c", "command": "convert", "inputs": "b.vdb", "output": "c.ply"})
         with SmallDisk(self.path("disk"), 1 << 25):
             process = subprocess.Popen([PROGRAM, "batch", "j.json"], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-            end = time.monotonic() + 120
+            end = time.monotonic() + PATIENCE
             while not [name for name in os.listdir(self.path("disk")) if name.startswith(".x.vdb.") and "batch" not in name]:
                 self.assertIsNone(process.poll(), "it ended too early")
                 self.assertLess(time.monotonic(), end)
                 time.sleep(0.002)
             subprocess.run(["umount", "--lazy", self.path("disk")], check=True)
-            _, words = process.communicate(timeout=240)
+            _, words = process.communicate(timeout=PATIENCE)
             self.assertEqual(process.returncode, 1, words)
             self.assertIn("1 done, 1 failed, 1 blocked; first a: disk/x.vdb: cannot be written", words.splitlines()[-1])
             self.assertEqual(os.listdir(self.path("disk")), [])

@@ -5,6 +5,7 @@ import subprocess
 import unittest
 
 PAGE = 4096  # tmpfs gives space in pages
+PATIENCE = 1800  # seconds for a step of a second, on a machine that does other things
 
 
 def number(variable, default):

@@ -12,7 +12,7 @@ import subprocess
 import time
 import unittest
 
-from night_shift import children_of, number, resident_bytes
+from night_shift import PATIENCE, children_of, number, resident_bytes
 from support import PROGRAM, CliTest, SOURCE
 
 OLD = b"old\n"
@@ -40,6 +40,10 @@ class NightTest(CliTest):
         self.ok("convert", "b.vdb", "-o", "b.ply", "-q")
         self.write("i.ppm", picture())
         self.sources = self.files()
+
+    def run_tool(self, *words, **options):
+        options.setdefault("timeout", PATIENCE)
+        return super().run_tool(*words, **options)
 
     def temporaries(self):
         return [os.path.join(folder, name) for folder, _, names in os.walk(self.folder) for name in names if name.endswith(".tmp")]
@@ -87,7 +91,7 @@ class Signals(NightTest):
 
     def ended(self, kind, to, process):
         """The contract's exit code and last line."""
-        _, words = process.communicate(timeout=240)
+        _, words = process.communicate(timeout=PATIENCE)
         what = f"{kind.name} to {to}: {process.returncode}: {words}"
         # Until its handlers are installed, a program ends as the system ends it, which a shell calls 130 and 143, too.
         by_code = {signal.SIGINT: (130, -2), signal.SIGTERM: (143, -15), signal.SIGKILL: (1,) if to == "child" else (-9,)}
@@ -175,7 +179,7 @@ class Signals(NightTest):
             process = self.start("batch", "j.json", "--jobs", 2, "-q", "--page", "p.html")
             time.sleep(draw.uniform(0, 1.1 * seconds))
             kind, to = self.send(draw, process)
-            _, words = process.communicate(timeout=240)
+            _, words = process.communicate(timeout=PATIENCE)
             codes.append(process.returncode)
             what = f"{kind.name} to {to}: {process.returncode}: {words}"
             by_code = {signal.SIGINT: (130, -2), signal.SIGTERM: (143, -15), signal.SIGKILL: (-9,)}[kind] if to != "child" else (1,)
@@ -197,7 +201,7 @@ class Signals(NightTest):
 class TwoBatches(NightTest):
     def both(self, first, second):
         processes = [self.start("batch", name, "--jobs", 2) for name in (first, second)]
-        said = [process.communicate(timeout=240)[1] for process in processes]
+        said = [process.communicate(timeout=PATIENCE)[1] for process in processes]
         return [(process.returncode, words) for process, words in zip(processes, said)]
 
     def batches(self):

@@ -11,8 +11,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <mutex>
-#include <set>
 #include <system_error>
 #include <utility>
 
@@ -55,14 +55,37 @@ void removeStale(const std::string& folder, const std::string& name) {
     }
 }
 
-// Temporary files of this process: two concurrent calls may write one file, for example a cached index.
+// Which folder a path means now.
+struct FolderIdentity {
+    dev_t device = 0;
+    ino_t number = 0;
+    bool operator==(const FolderIdentity& other) const {
+        return device == other.device && number == other.number;
+    }
+};
+
+FolderIdentity identityOf(const std::string& folder) {
+    struct stat status {};
+    if (::stat(folder.c_str(), &status) != 0) return {};
+    return {status.st_dev, status.st_ino};
+}
+
+// Temporary files of this process, and the folders they were created in: two concurrent calls may write one
+// file, for example a cached index.
 class NamesInUse {
 public:
     std::string take(const std::string& beginning) {
         const std::lock_guard<std::mutex> lock(mMutex);
+        const FolderIdentity folder = identityOf(folderOf(beginning));
         std::string name = beginning + ".tmp";
-        for (int n = 2; !mNames.insert(name).second; ++n) name = beginning + "-" + std::to_string(n) + ".tmp";
+        for (int n = 2; !mNames.insert({name, folder}).second; ++n)
+            name = beginning + "-" + std::to_string(n) + ".tmp";
         return name;
+    }
+    // False once a folder's name means another one, as when a share was unmounted.
+    bool inSameFolder(const std::string& name) {
+        const std::lock_guard<std::mutex> lock(mMutex);
+        return mNames.at(name) == identityOf(folderOf(name));
     }
     void giveBack(const std::string& name) {
         const std::lock_guard<std::mutex> lock(mMutex);
@@ -71,12 +94,22 @@ public:
 
 private:
     std::mutex mMutex;
-    std::set<std::string> mNames;
+    std::map<std::string, FolderIdentity> mNames;
 };
 
 NamesInUse& namesInUse() {
     static NamesInUse names;
     return names;
+}
+
+// A result written into another folder of that name would be lost under a share that comes back. File systems
+// that number their folders anew, or mount themselves again, still show the file reserved before.
+void requireSameFolder(const std::string& temporary, const std::string& path) {
+    if (::access(temporary.c_str(), F_OK) == 0 || namesInUse().inSameFolder(temporary)) return;
+    throw Error(
+        ErrorCode::Io,
+        path +
+            ": cannot be written: the folder is gone, or another than at the start; was a share unmounted?");
 }
 
 void syncToDisk(const std::string& temporary, const std::string& path) {
@@ -111,6 +144,7 @@ std::string OutputSet::add(const std::string& path) {
     for (Entry& entry : mEntries) {
         if (entry.path != path) continue;
         if (entry.taken) throw Error(ErrorCode::InvalidOption, path + ": named as an output twice");
+        requireSameFolder(entry.temporary, path);
         entry.taken = true;
         return entry.temporary;
     }

@@ -20,8 +20,8 @@ public:
     OutputSet& operator=(const OutputSet&) = delete;
 
     /// Registers an output. @return the path to write instead
-    /// @throw Error Io (no such folder, no permission, not a regular file), InvalidOption (named twice, also
-    /// by another path)
+    /// @throw Error Io (no such folder, not the one reserved in, no permission, not a regular file),
+    /// InvalidOption (named twice, also by another path)
     std::string add(const std::string& path);
     /// Creates the temporary file of an output that `add` will request later, so that an unwritable path is
     /// reported before the work starts.

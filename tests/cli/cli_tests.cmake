@@ -48,6 +48,14 @@ add_cli_test(programs_test Programs)
 add_cli_test(packages_test Packages)
 set_tests_properties("cli: packages_test Packages" PROPERTIES ENVIRONMENT "${CLI_ENVIRONMENT};VDBSYNTH_BUILD=${PROJECT_BINARY_DIR}" LABELS all)
 
+# Full disks, little memory, signals, many jobs: tools/run_tests.sh --all. VDBSYNTH_SIGNALS and VDBSYNTH_SOAK make it long.
+add_cli_test(night_disk_test FullDisk FullDiskOfBatch Folders Memory)
+add_cli_test(night_shift_test Signals TwoBatches Soak Threads JobFiles)
+foreach(class "night_disk_test FullDisk" "night_disk_test FullDiskOfBatch" "night_disk_test Folders" "night_disk_test Memory"
+        "night_shift_test Signals" "night_shift_test TwoBatches" "night_shift_test Soak" "night_shift_test Threads" "night_shift_test JobFiles")
+  set_tests_properties("cli: ${class}" PROPERTIES LABELS "all;slow" TIMEOUT 7200)
+endforeach()
+
 # A short run of every fuzz target; tools/dev/fuzz.sh runs them for longer.
 add_test(NAME "fuzz: readers" COMMAND ${PROJECT_SOURCE_DIR}/tools/dev/fuzz.sh 3)
 set_tests_properties("fuzz: readers" PROPERTIES LABELS "fuzz;slow" TIMEOUT 1200 SKIP_RETURN_CODE 77)

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <filesystem>
 #include <fstream>
 
 #include "tests/support/makers.h"
@@ -94,4 +95,25 @@ TEST_CASE("OutputSet: a path that was reserved and never written keeps its file"
     CHECK(test::contentOf(folder.path("old.json")) == "kept");
     CHECK(test::contentOf(folder.path("written.txt")) == "written");
     CHECK(folder.fileCount() == 2);
+}
+
+TEST_CASE("OutputSet: a reserved path whose folder is another one now is refused", "[io][error]") {
+    const test::TemporaryFolder folder;
+    const std::string share = folder.path("share"), away = folder.path("away");
+    std::filesystem::create_directory(share);
+    {
+        OutputSet outputs;
+        outputs.reserve(share + "/a.txt");
+        outputs.reserve(share + "/b.txt");
+        // A folder of the same name that holds what was reserved is the same folder, mounted again.
+        std::filesystem::rename(share, away);
+        std::filesystem::copy(away, share);
+        std::ofstream(outputs.add(share + "/a.txt")) << "new";
+        std::filesystem::remove_all(share);
+        std::filesystem::create_directory(share);
+        const auto error = test::thrownBy([&] { outputs.add(share + "/b.txt"); });
+        CHECK(error.code == int(ErrorCode::Io));
+        CHECK(test::contains(error.message, "b.txt: cannot be written: the folder is gone, or another"));
+    }
+    CHECK(std::filesystem::is_empty(share));
 }

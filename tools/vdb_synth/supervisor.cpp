@@ -153,9 +153,11 @@ int watch(Child& child, int file) {
     readMessages(child, file);
     if (WIFEXITED(status)) return WEXITSTATUS(status);
     removeTemporaries(child);
-    if (asked) {
+    // A signal to both may end the child before it listens, and before this loop looks.
+    const int stop = gSignal ? int(gSignal) : WTERMSIG(status);
+    if (stop == SIGINT || stop == SIGTERM) {
         std::fprintf(stderr, "vdb_synth: error: interrupted; nothing was written\n");
-        return 128 + int(gSignal);
+        return 128 + stop;
     }
     return reportDeath(child, WTERMSIG(status), hung);
 }

@@ -133,7 +133,7 @@ class Provoked(CliTest):
                            (3, "comma.obj"), (3, "a.off")):
             self.meets(code, "convert", name, "-o", "out.vdb")
         self.meets(2, "convert", "a.obj", "-o", "a.obj")
-        self.meets(2, "convert", "a.obj", "-o", "x.vdb", "-o", "x.vdb")
+        self.meets(3, "convert", "a.obj", "-o", "x.vdb")
         self.meets(2, "convert", "a.obj", "-o", "x.docx")
         self.meets(3, "make", "grid", "none/x.vdb")
 

@@ -43,6 +43,8 @@ add_cli_test(texture_test Texture Pictures Hostile)
 add_cli_test(threemf_test ThreeMf)
 add_cli_test(volumes_test Outputs Readers Scans)
 add_cli_test(programs_test Programs)
+add_cli_test(troubleshooting_test Words Provoked)
+add_cli_test(docs_test Links Options Commands)
 
 # Packs the build folder and makes a bare Debian: tools/run_tests.sh --all.
 add_cli_test(packages_test Packages)

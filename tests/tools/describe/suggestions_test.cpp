@@ -49,7 +49,8 @@ TEST_CASE("valuesOf: choices are all offered, numbers and flags offer nothing", 
     CHECK(valuesOf(*findOption("synth", "draft")).empty());
     CHECK(valuesOf(*findOption("synth", "index-cache")).folders);
     CHECK(valuesOf(*findOption("synth", "report")).anyFile);
-    CHECK(valuesOf(*findOption("render", "output")).extensions == std::vector<std::string>{"png"});
+    CHECK(valuesOf(*findOption("render", "output")).extensions ==
+          std::vector<std::string>{"png", "html", "htm"});
     CHECK(valuesOf(*findOption("analogy", "direction")).words.size() > 5);
 }
 

@@ -142,6 +142,7 @@ class Provoked(CliTest):
         self.write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n")
         self.meets(1, "convert", "points.obj", "-o", "x.vdb")
         self.meets(1, "convert", "sheet.obj", "-o", "x.vdb")
+        self.meets(2, "convert", "sheet.obj", "-o", "x.vdb", "--open", "shell", "--thickness", 1e-4)
         self.ok("make", "grid", "grid.vdb", "--resolution", 24)
         self.meets(1, "synth", "grid.vdb", "-o", "x.vdb", "--size", "8,8,8")
         self.meets(1, "crop", "grid.vdb", "-o", "x.vdb", "--box", "900,900,900,950,950,950")

@@ -81,7 +81,7 @@ TEST_CASE("writeVolume: every format and type comes back, however thin the slabs
         }
 }
 
-TEST_CASE("writeVolume: twice the same bytes; packed it unpacks to the same file", "[io][determinism]") {
+TEST_CASE("writeVolume: twice the same bytes, packed it unpacks to the same file", "[io][determinism]") {
     const test::TemporaryFolder folder;
     const VolumeHead head = headOf({9, 11, 10}, false);
     int unused = 0;

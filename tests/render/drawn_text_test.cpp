@@ -56,7 +56,7 @@ TEST_CASE("drawText: a capital letter is as tall as the size", "[render][oracle]
     CHECK(bottom - top == Approx(45 + 2 * 45 * 0.062).margin(2));
 }
 
-TEST_CASE("textWidth: the sum of letters and gaps; nothing of an empty text", "[render]") {
+TEST_CASE("textWidth: the sum of letters and gaps, nothing of an empty text", "[render]") {
     CHECK(textWidth("", 20) == 0);
     CHECK(textWidth("AB", 90) == 60 + 24 + 60);
     CHECK(textWidth("a b", 20) > textWidth("ab", 20));

@@ -360,6 +360,10 @@ TEST_CASE("makeAnalogyModel: a target thinner than a neighbourhood is worked on,
         model.domain = solidBox(*model.grid, "island");
         return model;
     }();
+    // By default a core of it stays.
+    const AnalogyResult kept = makeAnalogyModel({{&grooves.plain, &grooves.textured}}, small, options);
+    CHECK(solidVoxels(*kept.model.grid) > 0);
+    options.thin = ThinParts::AsIs;
     const test::Thrown gone = test::thrownBy([&] {
         makeAnalogyModel({{&grooves.plain, &grooves.textured}}, small, options);
     });

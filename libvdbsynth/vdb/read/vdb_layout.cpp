@@ -11,6 +11,7 @@ namespace vdbsynth {
 namespace {
 
 // Since these versions of the format: ids as text, metadata and compression per grid, half precision.
+constexpr std::uint32_t kUsualValue = 1 << 16;  // [bytes] of one item of metadata
 constexpr std::uint32_t kOldest = 222, kNewest = openvdb::OPENVDB_FILE_VERSION, kReadable = 200;
 constexpr std::uint64_t kUuid = 36, kShortestMetadata = 12, kShortestGrid = 36;
 
@@ -86,7 +87,8 @@ private:
             (void)text();
             (void)text();
             const auto length = number<std::uint32_t>();
-            if (length > left()) damaged();
+            // A value of a usual length is cut off; no value is as long as a damaged length says.
+            if (length > left() && length > kUsualValue) damaged();
             skip(length);
         }
     }

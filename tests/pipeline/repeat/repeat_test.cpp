@@ -219,7 +219,8 @@ TEST_CASE("repeatMap: another textured model gives an analogy's arrangement anot
     CHECK(solidVoxels(*repeated.grid) == Approx(moved).epsilon(0.02));
     CHECK(solidVoxels(*repeated.grid) > 1.05 * solidVoxels(*result.model.grid));
     told.clear();
-    const LevelSet thickest = offset(pair.textured, 9);
+    // By what its band holds each time: three voxels.
+    const LevelSet thickest = offset(offset(pair.textured, 9), 9);
     repeatMap(result.map, {&thickest, &target}, {}, ctx);
     REQUIRE(told.size() == 2);
     CHECK(test::contains(told[1], "is cut off where"));

@@ -36,11 +36,9 @@ struct Made {
 // - mDistance is the field as synthesised so far, full or empty (-kFar, kFar) where nothing has to be, and
 //   mDensity is densityField of it;
 // - mChanged[i] and mComputed[i] are the waves (counted by mNow) in which voxel i last got another source and
-// was
-//   last searched; a later sweep searches only voxels that changed, or have a neighbour that did, since then;
+//   was last searched; a later sweep searches only voxels that changed, or have a neighbour that did, since;
 // - a wave reads only the state before it and writes mFound, which is then applied in order, so results do
-// not
-//   depend on threads.
+//   not depend on threads.
 class Level {
 public:
     Level(const AnalogyTraining& training, const AnalogyPyramid& target, const FrameField& frames, int level,
@@ -436,18 +434,6 @@ void validate(const VolumeAnalogyOptions& options) {
                   "from 0 to 100");
 }
 
-namespace {
-
-bool fullAt(const std::vector<DepthRun>& depths, float plain) {
-    const int depth = int(std::lround(std::clamp(plain, -1e6f, 1e6f)));
-    bool full = depths.front().full;
-    for (const DepthRun& run : depths)
-        if (run.from <= depth) full = run.full;
-    return full;
-}
-
-}  // namespace
-
 VolumeAnalogyResult makeAnalogy(const std::vector<AnalogyPair>& pairs, const BrickField& target,
                                 const FrameField& frames, const VolumeAnalogyOptions& given,
                                 const RunContext& ctx) {
@@ -475,30 +461,6 @@ VolumeAnalogyResult makeAnalogy(const std::vector<AnalogyPair>& pairs, const Bri
         }
     }
     return result;
-}
-
-BrickField readAnalogy(const ElementSources& sources, const std::vector<DepthRun>& depths,
-                       const IndexBox& mapBox, const std::vector<ExemplarSamples>& textured,
-                       const BrickField& target, int factor, const RunContext& ctx) {
-    if (depths.empty() || finerBox(mapBox, factor).size() != target.box().size())
-        throw Error(ErrorCode::ShapeMismatch, "the sources are of another target");
-    const float far = kFar * float(factor);
-    const Index3 first = finerBox(mapBox, factor).min;
-    const BrickField otherwise =
-        BrickField::generate(target.box(), ctx, [&](const IndexBox& brick, float* samples) {
-            target.readBox(brick.min, brick.size(), samples);
-            for (int i = 0; i < BrickField::kSamples; ++i) {
-                float plain = samples[i];
-                if (factor > 1) {
-                    // By the map's voxel as a whole, whose middle is at a multiple of the factor.
-                    const Index3 p = brick.min + Index3{i >> 6, (i >> 3) & 7, i & 7};
-                    const Index3 voxel = mapBox.min + Index3{p.x / factor, p.y / factor, p.z / factor};
-                    plain = target.at(voxel * factor - first) / float(factor);
-                }
-                samples[i] = fullAt(depths, plain) ? -far : far;
-            }
-        });
-    return gatherThroughSources(sources, mapBox, factor, textured, otherwise, far, ctx);
 }
 
 }  // namespace vdbsynth

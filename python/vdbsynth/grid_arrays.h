@@ -48,6 +48,15 @@ void requirePlace(const ArrayPlace& place);
 GridPtr gridOfArray(const std::string& name, const py::array& array, const ArrayPlace& place,
                     double background);
 
+/// Calls each(i, j, k, n) for the voxels of a box in the array's order.
+template <typename Each>
+void forEachOf(const Index3& size, const Each& each) {
+    std::size_t n = 0;
+    for (int i = 0; i < size.x; ++i)
+        for (int j = 0; j < size.y; ++j)
+            for (int k = 0; k < size.z; ++k) each(i, j, k, n++);
+}
+
 /// The index of an array's first voxel, and what its transform is translated by [world].
 struct ArrayCorner {
     Index3 first;

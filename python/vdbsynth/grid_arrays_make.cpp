@@ -14,15 +14,6 @@
 namespace vdbsynth::python {
 namespace {
 
-// Calls each(i, j, k, n) for the voxels of a box in the array's order.
-template <typename Each>
-void forEachOf(const Index3& size, const Each& each) {
-    std::size_t n = 0;
-    for (int i = 0; i < size.x; ++i)
-        for (int j = 0; j < size.y; ++j)
-            for (int k = 0; k < size.z; ++k) each(i, j, k, n++);
-}
-
 template <typename GridType>
 typename GridType::Ptr created(const typename GridType::ValueType& background) {
     openvdb::initialize();

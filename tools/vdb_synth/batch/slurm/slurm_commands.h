@@ -56,7 +56,7 @@ int largestIndex();
 /// @throw Error InvalidOption (a quote without its second; an argument of sbatch that batch sets itself)
 std::vector<std::string> sbatchArguments(const std::string& text);
 
-/// Rows "id|index|state|seconds as D-HH:MM:SS|nodes|reason" of squeue; what is no such row is passed over.
+/// Rows "id|index|state|seconds as D-HH:MM:SS|nodes|reason" of squeue; other rows are passed over.
 SlurmTasks readTasks(const std::string& rows);
 /// Rows "id_index|state|seconds as D-HH:MM:SS|nodes" of sacct.
 SlurmTasks readAccounts(const std::string& rows);

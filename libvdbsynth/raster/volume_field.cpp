@@ -233,6 +233,9 @@ RasterField volumeField(const std::string& name, const Raster& given, const Volu
                 "`threshold` " + rounded((range.minimum + range.maximum) / 2) + ", which smooths less, or ";
     }
     const bool inPlace = options.pixelSize <= 0 && options.pixelSides.x <= 0;
+    if (inPlace && !given.knownSpacing)
+        result.description += std::string(result.description.empty() ? "" : "; ") +
+                              "it names no spacing, so samples are 1 apart (world); `pixelSize` changes that";
     placeField(name, raster, cell, inPlace, result, ctx);
     stage.advance();
     return result;

@@ -162,6 +162,13 @@ TEST_CASE("volumeField: of two values the larger is solid, of more one must be n
     CHECK(result.field.at({6, 4, 4}) < 0);
     CHECK(result.field.at({1, 4, 4}) > 0);
     CHECK(test::contains(result.description, "255 is solid"));
+    CHECK(test::contains(result.description, "it names no spacing"));
+    VolumeOptions given;
+    given.pixelSize = 2;
+    CHECK_FALSE(test::contains(volumeField("a", two, given).description, "spacing"));
+    Raster placed = two;
+    placed.knownSpacing = true;
+    CHECK_FALSE(test::contains(volumeField("a", placed).description, "spacing"));
     const Raster many = rasterOf({8, 8, 8}, [](int x, int, int) { return float(x); });
     CHECK(test::contains(test::thrownBy([&] { volumeField("a.npy", many); }).message,
                          "a.npy: choose what is solid with `threshold`"));

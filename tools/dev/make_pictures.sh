@@ -66,7 +66,7 @@ draw_shallow() {
   "$root/tools/dev/make_sample.py" bricks bricks.png 128
   tori 150
   run convert bricks.png -o A.vdb --height 0.001 --base 12
-  run convert bricks.png -o A2.vdb --height 6 --base 9
+  run convert bricks.png -o A2.vdb --height 6 --base 12
   run analogy A.vdb A2.vdb tori.vdb -o walls.vdb --direction around:z --scale 0.5
   run make scales S.vdb S2.vdb
   run analogy S.vdb S2.vdb tori.vdb -o scaly.vdb --direction around:z

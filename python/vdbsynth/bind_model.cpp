@@ -172,8 +172,8 @@ void defineMakers(LevelSetClass& levelSet) {
                     documented<VolumeOptions, BandOptions, Call>(
                         "LevelSet.from_volume",
                         "The solid of a volume of any values [x, y, z]: where the value is above "
-                        "`threshold`, one of `labels`, or the\n"
-                        "larger of only two values. The array's box is the recorded domain. NaN is outside.")
+                        "`threshold`, below `below`, one of\n"
+                        "`labels`, or the larger of only two values. The array's box is the recorded domain. NaN is outside.")
                         .c_str())
         .def_static(
             "from_mesh",

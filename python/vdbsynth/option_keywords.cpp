@@ -15,6 +15,14 @@ struct Words<ThinParts> {
         {"scale", ThinParts::Scale}, {"keep", ThinParts::Keep}, {"as-is", ThinParts::AsIs}};
 };
 template <>
+struct Words<VolumeValues> {
+    static constexpr const char* kType = "Literal['inside', 'distance', 'density']";
+    static constexpr std::pair<const char*, VolumeValues> kAll[] = {
+        {"inside", VolumeValues::Inside},
+        {"distance", VolumeValues::Distance},
+        {"density", VolumeValues::Density}};
+};
+template <>
 struct Words<PatchMethod> {
     static constexpr const char* kType = "Literal['default', 'paper']";
     static constexpr std::pair<const char*, PatchMethod> kAll[] = {{"default", PatchMethod::Default},
@@ -171,6 +179,8 @@ void describe(Keywords& keywords, ModelOptions& options) {
                  "[world] of solid under an image's lowest point; 0: a twentieth of its longer side");
     keywords.add("plane", heights.plane, "ground plane of an image");
     keywords.add("threshold", options.volume.threshold, "a volume is solid where its value is above it");
+    keywords.add("below", options.volume.below,
+                 "a volume is solid where its value is below it, as of distances");
     keywords.add("labels", options.volume.labels,
                  "a volume is solid where its value is one of these, numbers or (low, high)");
     keywords.add("carry", options.carry,
@@ -190,6 +200,8 @@ void describe(Keywords& keywords, ModelOutputOptions& options) {
     keywords.add("plane", options.plane, "of height images");
     keywords.add("height", options.height,
                  "[world] of white in a .png of heights; 0: that of the highest point");
+    keywords.add("unit", options.unit, "of the world, for a model whose file named none; '': unknown");
+    keywords.add("values", options.values, "of volumes (.npy, .tif, .vti, .nii)");
     keywords.add("extraGrids", options.extraGrids, "written next to `surface` into .vdb outputs");
     keywords.add("name", options.name, "of the level set's grid in .vdb outputs; '': surface");
     keywords.add("half", options.half, ".vdb outputs hold halves");
@@ -198,6 +210,7 @@ void describe(Keywords& keywords, ModelOutputOptions& options) {
 
 void describe(Keywords& keywords, VolumeOptions& options) {
     keywords.add("threshold", options.threshold, "solid where the value is above it");
+    keywords.add("below", options.below, "solid where the value is below it, as of distances");
     keywords.add("labels", options.labels, "solid where the value is one of these, numbers or (low, high)");
 }
 

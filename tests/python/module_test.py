@@ -94,6 +94,17 @@ class Arrays(ModuleTest):
         part = model.to_numpy(((5, 6, 7), (8, 8, 8)))
         numpy.testing.assert_array_equal(part, values[5 - low[0]:9 - low[0], 6 - low[1]:9 - low[1], 7 - low[2]:9 - low[2]])
 
+    def test_a_solid_below_a_value_and_back_as_volumes(self):
+        distance = distances((21, 21, 21), 1.0, 6.0, (10, 10, 10))
+        model = vdbsynth.LevelSet.from_volume(distance, below=0.0)
+        model.write([self.path("inside.npy")])
+        model.write([self.path("distance.npy")], values="distance")
+        inside, far = numpy.load(self.path("inside.npy")), numpy.load(self.path("distance.npy"))
+        self.assertEqual((inside.dtype, far.dtype), (numpy.uint8, numpy.float32))
+        numpy.testing.assert_array_equal(inside, distance.transpose(2, 1, 0) < 0)
+        near = abs(far) < 1.5
+        numpy.testing.assert_allclose(far[near], distance.transpose(2, 1, 0)[near], atol=0.15)
+
     def test_a_texture_is_capped_at_its_array(self):
         rows = numpy.arange(16.0)
         height = numpy.broadcast_to(rows - 7.5, (24, 20, 16)).astype("float32")  # solid below z = 7.5

@@ -17,10 +17,9 @@ struct Words<ThinParts> {
 template <>
 struct Words<VolumeValues> {
     static constexpr const char* kType = "Literal['inside', 'distance', 'density']";
-    static constexpr std::pair<const char*, VolumeValues> kAll[] = {
-        {"inside", VolumeValues::Inside},
-        {"distance", VolumeValues::Distance},
-        {"density", VolumeValues::Density}};
+    static constexpr std::pair<const char*, VolumeValues> kAll[] = {{"inside", VolumeValues::Inside},
+                                                                    {"distance", VolumeValues::Distance},
+                                                                    {"density", VolumeValues::Density}};
 };
 template <>
 struct Words<PatchMethod> {

@@ -54,5 +54,10 @@ int main(int argc, char** argv) {
         std::ofstream(std::filesystem::path(argv[1]) / "tif" / ("dialect" + std::to_string(number++)),
                       std::ios::binary)
             << content;
+    std::filesystem::create_directories(std::filesystem::path(argv[1]) / "jobs");
+    for (const char* name : {"batch.json", "batch.yaml"})
+        std::filesystem::copy_file(std::filesystem::path(VDBSYNTH_SOURCE_DIR) / "docs/examples" / name,
+                                   std::filesystem::path(argv[1]) / "jobs" / name,
+                                   std::filesystem::copy_options::overwrite_existing);
     return 0;
 }

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Puts the textures of `make`'s pairs on models and measures what came of it: the angle between grooves and the direction
-field, their spacing, the density of holes and whether they go through, the offset of a dilation, a blur of densities. Prints a line for each.
+field, their spacing, the density of holes and whether they go through, the offset of a dilation, the heights of pictures' reliefs
+and their spectrum, a blur of densities. Prints a line for each.
 Usage: analogies.py BUILD_FOLDER [--analogy "OPTIONS"] [ROW...]
 A row is run if its name contains one of the words. Needs numpy, scipy, skimage and pyopenvdb."""
 import argparse
@@ -15,6 +16,7 @@ import time
 import numpy as np
 import pyopenvdb as vdb
 import scipy.ndimage as ndimage
+import skimage.io
 from skimage.measure import euler_number
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
@@ -40,6 +42,61 @@ BLURS = {
     "blur-tori-2": ("three-tori", 96, 2.0),
     "blur-bunny": ("meshes/bunny.off", 128, 1.5),
 }
+# name: (picture: a function below or a sample, height of white [voxels], pixels of a voxel). The target is a cylinder.
+RELIEFS = {
+    "relief-bricks": ("bricks", 4, 1),
+    "relief-grain": ("grain", 4, 1),
+    "relief-leather": ("textures/print-leather2.png", 6, 2),
+    "relief-bark": ("textures/vistex-Bark-11.png", 8, 1),
+    "relief-sand": ("textures/vistex-Sand-05.png", 5, 1),
+}
+PICTURE = 128  # [voxels] of a picture's sides
+RADIUS, LENGTH = 48, 176  # [voxels] of the cylinder
+BASE = 12  # [voxels] of solid below a relief
+LONGEST = (64, 16, 8, 4, 2.5)  # [voxels] wavelengths between which a spectrum's bands lie
+
+
+def bricks():
+    """Rows of bricks with joints two voxels wide, each brick of its own height: 0 to 1."""
+    rows, columns = np.mgrid[0:PICTURE, 0:PICTURE]
+    row = rows // 8
+    column = (columns + 8 * (row % 2)) % PICTURE // 16
+    heights = 0.8 + 0.2 * np.random.default_rng(5).random((PICTURE // 8, PICTURE // 16))
+    return np.where((rows % 8 < 2) | ((columns + 8 * (row % 2)) % 16 < 2), 0.0, heights[row, column])
+
+
+def grain():
+    """The noise of a scan: normal, of 1.2 voxels' width."""
+    noise = ndimage.gaussian_filter(np.random.default_rng(6).standard_normal((PICTURE, PICTURE)), 1.2, mode="wrap")
+    return np.clip(0.5 + noise / (6 * noise.std()), 0, 1)
+
+
+def gray_of(path, scale):
+    """A square of a picture around its middle, PICTURE * scale pixels wide, 0 to 1."""
+    gray = skimage.io.imread(path, as_gray=True).astype(float)
+    gray /= gray.max()
+    size = min(PICTURE * scale, *gray.shape)
+    first = [(n - size) // 2 for n in gray.shape]
+    return gray[first[0]:first[0] + size, first[1]:first[1] + size]
+
+
+def bands(heights):
+    """Deviation of heights [voxels] within bands of wavelengths, from a periodogram whose borders fade."""
+    n = heights.shape
+    window = np.sqrt(np.outer(np.hanning(n[0]), np.hanning(n[1])))
+    power = np.abs(np.fft.fft2((heights - heights.mean()) * window)) ** 2 / (window ** 2).sum() / heights.size
+    frequency = np.hypot(*np.meshgrid(np.fft.fftfreq(n[0]), np.fft.fftfreq(n[1]), indexing="ij"))
+    return [np.sqrt(power[(frequency >= 1 / a) & (frequency < 1 / b)].sum()) for a, b in zip(LONGEST, LONGEST[1:])]
+
+
+def outermost(distance):
+    """Where the surface is along the last axis, seen from its end [samples]; the middle where none is seen."""
+    back = distance[..., ::-1]
+    inner = np.maximum((back < 0).argmax(axis=-1), 1)[..., None]
+    within, outside = (np.take_along_axis(back, inner - k, axis=-1)[..., 0] for k in (0, 1))
+    seen = (within < 0) & (outside >= 0)
+    at = inner[..., 0] - 1 + np.where(seen, outside, 0) / np.where(seen, outside - within, 1)
+    return np.where(seen, distance.shape[-1] - 1 - at, np.nan)
 
 
 class Model:
@@ -158,6 +215,43 @@ class Measurements:
         rms = lambda a: np.sqrt(np.mean(np.square(a, dtype=np.float64)))
         print(f"{name:16} {seconds:5.1f} s  RMS(made - true) / RMS(true - before) {rms(made - dense['B2']) / rms(dense['B2'] - dense['B']):.3f}", flush=True)
 
+    def relief(self, name, picture, white, scale):
+        """A picture's relief on a cylinder: deviation, quantiles and bands of wavelengths, next to the pair's."""
+        gray = gray_of(SAMPLES / picture, scale) if "/" in picture else {"bricks": bricks, "grain": grain}[picture]()
+        skimage.io.imsave(self.folder / f"{name}_picture.png", np.round(65535 * gray).astype(np.uint16), check_contrast=False)
+        for file, height in (("A", 0.001), ("A2", white)):
+            self.tool("convert", f"{name}_picture.png", "-o", f"{file}.vdb", "--height", height * scale, "--base", BASE * scale, "--voxel-size", scale)
+        half = RADIUS + BAND + 2
+        x, y = np.mgrid[-half:half + 1, -half:half + 1]
+        z = np.abs(np.arange(-LENGTH // 2 - BAND - 2, LENGTH // 2 + BAND + 3)) - LENGTH / 2
+        distance = np.maximum((np.hypot(x, y) - RADIUS)[:, :, None], z)
+        grid = vdb.FloatGrid(4 * scale)
+        grid.name, grid.gridClass, grid.transform = "surface", vdb.GridClass.LEVEL_SET, vdb.createLinearTransform(scale)
+        grid.copyFromArray((np.clip(distance, -4, 4) * scale).astype(np.float32), ijk=(-half, -half, -LENGTH // 2 - BAND - 2), tolerance=0)
+        vdb.write(str(self.folder / "B.vdb"), grid)
+        began = time.monotonic()
+        self.tool("analogy", "A.vdb", "A2.vdb", "B.vdb", "-o", f"{name}.vdb", "--direction", "axis:z", "--half-width", BAND, *self.options)
+        seconds = time.monotonic() - began
+        self.tool("render", f"{name}.vdb", "-o", f"{name}.png")
+        self.tool("convert", "A2.vdb", "-o", "A2w.vdb", "--half-width", BAND)
+        pair, made = (read(self.folder / file)[0] for file in ("A2w.vdb", f"{name}.vdb"))
+        size = round(gray.shape[0] / scale)
+        columns = np.array([-pair.low[0], -pair.low[1]])
+        of_pair = outermost(pair.distance[columns[0] + 6:columns[0] + size - 6, columns[1] + 6:columns[1] + size - 6])
+        angle = np.arange(0, 2 * np.pi, 1 / RADIUS)
+        along = np.arange(-LENGTH // 2 + 24, LENGTH // 2 - 24)
+        step = 0.25
+        radius = np.arange(RADIUS - BASE, RADIUS + white + 4, step)
+        places = np.stack(np.broadcast_arrays(np.cos(angle)[:, None, None] * radius, np.sin(angle)[:, None, None] * radius, along[None, :, None]))
+        of_made = outermost(sample(made.distance, places.reshape(3, -1) - np.array(made.low)[:, None]).reshape(places.shape[1:])) * step
+        quantiles = np.arange(2, 99, 4)
+        wanted, found = (np.nanpercentile(h - np.nanmedian(h), quantiles) for h in (of_pair, of_made))
+        ratios = [a / b for a, b in zip(bands(np.nan_to_num(of_made, nan=np.nanmean(of_made))), bands(np.nan_to_num(of_pair, nan=np.nanmean(of_pair))))]
+        print(f"{name:16} {seconds:5.1f} s  deviation {np.nanstd(of_made):.2f} of {np.nanstd(of_pair):.2f} voxels ({100 * (np.nanstd(of_made) / np.nanstd(of_pair) - 1):+.0f} %)  "
+              f"quantiles off by {100 * np.abs(found - wanted).mean() / np.nanstd(of_pair):.0f} % of it  "
+              f"deviation by wavelengths {', '.join(f'{a:g}-{b:g}' for a, b in zip(LONGEST, LONGEST[1:]))}: "
+              f"{', '.join(f'{100 * (r - 1):+.0f} %' for r in ratios)}", flush=True)
+
     def pair(self, margin=6):
         """Heights and slopes of the pair, `margin` voxels from where it is cut off."""
         for name in ("A", "A2"):  # what is made has a narrower band than its texture is deep
@@ -248,15 +342,15 @@ def main():
     parser.add_argument("--analogy", default="", help="options to analogy, to choose defaults with")
     arguments = parser.parse_intermixed_args()
     measurements, failures = Measurements(arguments), 0
-    for name, row in {**ROWS, **BLURS}.items():
+    for name, row in {**ROWS, **RELIEFS, **BLURS}.items():
         if arguments.rows and not any(word in name for word in arguments.rows):
             continue
-        target = row[0] if name in BLURS else row[1]
+        target = row[1] if name in ROWS else row[0]
         if "/" in target and not (SAMPLES / target).exists():
             print(f"{name:16} skipped: its sample is absent", flush=True)
             continue
         try:
-            (measurements.blur if name in BLURS else measurements.run)(name, *row)
+            (measurements.blur if name in BLURS else measurements.relief if name in RELIEFS else measurements.run)(name, *row)
         except RuntimeError as error:
             print(f"{name:16} failed: {error}", flush=True)
             failures += 1

@@ -83,8 +83,8 @@ public:
             const std::int32_t j = mTable.find(voxel + step);
             if (j < 0) return;
             const Vec3f offset = from - Vec3f{float(step.x), float(step.y), float(step.z)};
-            const float weight =
-                taper(offset.x) * taper(offset.y) * taper(offset.z) / (1 + dot(offset, offset));
+            const float far = 1 + dot(offset, offset);
+            const float weight = taper(offset.x) * taper(offset.y) * taper(offset.z) / (far * far);
             sum += weight * std::clamp(mReaders[std::size_t(j)](offset), -mLimit, mLimit);
             weights += weight;
         });

@@ -20,12 +20,13 @@ struct ExemplarSamples {
 /// Distances read through the sources of voxels. A position v in a voxel of the map with a source takes the
 /// mean of the proposals of the sources of the voxels j around it,
 ///     value(v) = sum_j w(v - j) E_j(x_j + R_j^T (v - j) / s_j) / sum_j w(v - j)
-///     w(o) = t(o_x) t(o_y) t(o_z) / (1 + |o|^2),   t(a) = min(1, max(0, 2 - |a|))
+///     w(o) = t(o_x) t(o_y) t(o_z) / (1 + |o|^2)^2,   t(a) = min(1, max(0, 2 - |a|))
 /// with x, R and s the position, rotation and scale of a source (volume_analogy.h). E is read by a cubic
 /// polynomial (sampleCubic): trilinear values would cut the crests of a texture a few voxels fine. In the
 /// middle of a voxel these are the voxel itself and its 26 neighbours. Sources that continue each other
-/// propose one value; where they do not, the mean has no seam. A field of `factor` times the map's resolution
-/// is read at the voxels that make up each voxel of the map.
+/// propose one value; where they do not, the mean has no seam. The voxel's own source has a quarter of the
+/// weight: with less, what is finest of a texture is lost where sources agree but for a part of a voxel. A
+/// field of `factor` times the map's resolution is read at the voxels that make up each voxel of the map.
 /// @param sources    of voxels, each with one source
 /// @param mapBox     the target box in the map's coordinates
 /// @param factor     1..64

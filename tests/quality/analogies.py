@@ -54,6 +54,7 @@ PICTURE = 128  # [voxels] of a picture's sides
 RADIUS, LENGTH = 48, 176  # [voxels] of the cylinder
 BASE = 12  # [voxels] of solid below a relief
 LONGEST = (64, 16, 8, 4, 2.5)  # [voxels] wavelengths between which a spectrum's bands lie
+BANDS = ", ".join(f"{a:g} to {b:g}" for a, b in zip(LONGEST, LONGEST[1:]))
 
 
 def bricks():
@@ -215,42 +216,45 @@ class Measurements:
         rms = lambda a: np.sqrt(np.mean(np.square(a, dtype=np.float64)))
         print(f"{name:16} {seconds:5.1f} s  RMS(made - true) / RMS(true - before) {rms(made - dense['B2']) / rms(dense['B2'] - dense['B']):.3f}", flush=True)
 
+    def cylinder(self, voxel):
+        half, tall = RADIUS + BAND + 2, LENGTH // 2 + BAND + 2
+        x, y, z = np.mgrid[-half:half + 1, -half:half + 1, -tall:tall + 1]
+        distance = np.maximum(np.hypot(x, y) - RADIUS, np.abs(z) - LENGTH / 2)
+        grid = vdb.FloatGrid(4 * voxel)
+        grid.name, grid.gridClass, grid.transform = "surface", vdb.GridClass.LEVEL_SET, vdb.createLinearTransform(voxel)
+        grid.copyFromArray((np.clip(distance, -4, 4) * voxel).astype(np.float32), ijk=(-half, -half, -tall), tolerance=0)
+        vdb.write(str(self.folder / "B.vdb"), grid)
+
     def relief(self, name, picture, white, scale):
         """A picture's relief on a cylinder: deviation, quantiles and bands of wavelengths, next to the pair's."""
         gray = gray_of(SAMPLES / picture, scale) if "/" in picture else {"bricks": bricks, "grain": grain}[picture]()
         skimage.io.imsave(self.folder / f"{name}_picture.png", np.round(65535 * gray).astype(np.uint16), check_contrast=False)
         for file, height in (("A", 0.001), ("A2", white)):
             self.tool("convert", f"{name}_picture.png", "-o", f"{file}.vdb", "--height", height * scale, "--base", BASE * scale, "--voxel-size", scale)
-        half = RADIUS + BAND + 2
-        x, y = np.mgrid[-half:half + 1, -half:half + 1]
-        z = np.abs(np.arange(-LENGTH // 2 - BAND - 2, LENGTH // 2 + BAND + 3)) - LENGTH / 2
-        distance = np.maximum((np.hypot(x, y) - RADIUS)[:, :, None], z)
-        grid = vdb.FloatGrid(4 * scale)
-        grid.name, grid.gridClass, grid.transform = "surface", vdb.GridClass.LEVEL_SET, vdb.createLinearTransform(scale)
-        grid.copyFromArray((np.clip(distance, -4, 4) * scale).astype(np.float32), ijk=(-half, -half, -LENGTH // 2 - BAND - 2), tolerance=0)
-        vdb.write(str(self.folder / "B.vdb"), grid)
+        self.cylinder(scale)
         began = time.monotonic()
         self.tool("analogy", "A.vdb", "A2.vdb", "B.vdb", "-o", f"{name}.vdb", "--direction", "axis:z", "--half-width", BAND, *self.options)
         seconds = time.monotonic() - began
         self.tool("render", f"{name}.vdb", "-o", f"{name}.png")
         self.tool("convert", "A2.vdb", "-o", "A2w.vdb", "--half-width", BAND)
-        pair, made = (read(self.folder / file)[0] for file in ("A2w.vdb", f"{name}.vdb"))
-        size = round(gray.shape[0] / scale)
-        columns = np.array([-pair.low[0], -pair.low[1]])
-        of_pair = outermost(pair.distance[columns[0] + 6:columns[0] + size - 6, columns[1] + 6:columns[1] + size - 6])
-        angle = np.arange(0, 2 * np.pi, 1 / RADIUS)
-        along = np.arange(-LENGTH // 2 + 24, LENGTH // 2 - 24)
+        print(f"{name:16} {seconds:5.1f} s  " + self.relief_measures(f"{name}.vdb", white, round(gray.shape[0] / scale)), flush=True)
+
+    def relief_measures(self, made, white, size, margin=6):
+        pair, made = (read(self.folder / file)[0] for file in ("A2w.vdb", made))
+        inner = slice(margin, size - margin)
+        wanted = outermost(pair.distance[-pair.low[0]:, -pair.low[1]:][inner, inner])
+        angle = np.arange(0, 2 * np.pi, 1 / RADIUS)[:, None, None]
+        along = np.arange(-LENGTH // 2 + 24, LENGTH // 2 - 24)[None, :, None]
         step = 0.25
         radius = np.arange(RADIUS - BASE, RADIUS + white + 4, step)
-        places = np.stack(np.broadcast_arrays(np.cos(angle)[:, None, None] * radius, np.sin(angle)[:, None, None] * radius, along[None, :, None]))
-        of_made = outermost(sample(made.distance, places.reshape(3, -1) - np.array(made.low)[:, None]).reshape(places.shape[1:])) * step
-        quantiles = np.arange(2, 99, 4)
-        wanted, found = (np.nanpercentile(h - np.nanmedian(h), quantiles) for h in (of_pair, of_made))
-        ratios = [a / b for a, b in zip(bands(np.nan_to_num(of_made, nan=np.nanmean(of_made))), bands(np.nan_to_num(of_pair, nan=np.nanmean(of_pair))))]
-        print(f"{name:16} {seconds:5.1f} s  deviation {np.nanstd(of_made):.2f} of {np.nanstd(of_pair):.2f} voxels ({100 * (np.nanstd(of_made) / np.nanstd(of_pair) - 1):+.0f} %)  "
-              f"quantiles off by {100 * np.abs(found - wanted).mean() / np.nanstd(of_pair):.0f} % of it  "
-              f"deviation by wavelengths {', '.join(f'{a:g}-{b:g}' for a, b in zip(LONGEST, LONGEST[1:]))}: "
-              f"{', '.join(f'{100 * (r - 1):+.0f} %' for r in ratios)}", flush=True)
+        places = np.stack(np.broadcast_arrays(np.cos(angle) * radius, np.sin(angle) * radius, along))
+        found = outermost(sample(made.distance, places.reshape(3, -1) - made.low[:, None]).reshape(places.shape[1:])) * step
+        of_wanted, of_found = (np.nanpercentile(h - np.nanmedian(h), np.arange(2, 99, 4)) for h in (wanted, found))
+        known = [np.where(np.isnan(h), np.nanmean(h), h) for h in (found, wanted)]
+        deviation = [h.std() for h in known]
+        parts = ", ".join(f"{100 * (a / b - 1):+.0f} %" for a, b in zip(*map(bands, known)))
+        return (f"deviation {deviation[0]:.2f} of {deviation[1]:.2f} voxels ({100 * (deviation[0] / deviation[1] - 1):+.0f} %)  "
+                f"quantiles off by {100 * np.abs(of_found - of_wanted).mean() / deviation[1]:.0f} % of it  wavelengths {BANDS}: {parts}")
 
     def pair(self, margin=6):
         """Heights and slopes of the pair, `margin` voxels from where it is cut off."""

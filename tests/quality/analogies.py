@@ -46,7 +46,7 @@ BLURS = {
 RELIEFS = {
     "relief-bricks": ("bricks", 4, 1),
     "relief-grain": ("grain", 4, 1),
-    "relief-leather": ("textures/print-leather2.png", 6, 2),
+    "relief-leather": ("textures/print-leather2.png", 6, 4),
     "relief-bark": ("textures/vistex-Bark-11.png", 8, 1),
     "relief-sand": ("textures/vistex-Sand-05.png", 5, 1),
 }

@@ -26,7 +26,12 @@ std::vector<Option> runningOptionTable() {
             .says("most memory to use, such as 4G")
             .otherwiseIs("80 % of the machine's")
             .takenBy(every),
-        choice("progress", "STYLE", {{"auto", "a bar on a terminal"}, {"bar", ""}, {"json", ""}, {"off", ""}})
+        choice("progress", "STYLE",
+               {{"auto", "a bar on a terminal, else lines"},
+                {"bar", ""},
+                {"lines", "a line a minute"},
+                {"json", ""},
+                {"off", ""}})
             .says("progress on standard error")
             .initially("auto")
             .takenBy(every),

@@ -23,7 +23,15 @@ std::string timeLeft(double seconds, double fraction) {
     return ", " + std::to_string((left + 30) / 60) + " min left";
 }
 
+constexpr std::chrono::seconds kBetweenLines{60};
+
 }  // namespace
+
+std::string progressText(const Progress& progress, double seconds) {
+    const double fraction = double(progress.done) / double(progress.total);
+    return printableText(progress.stage.substr(0, 60)) + ", " + std::to_string(int(fraction * 100)) + " %" +
+           timeLeft(seconds, fraction);
+}
 
 std::uint64_t peakMemory() {
     rusage usage{};
@@ -56,6 +64,13 @@ void ProgressLog::draw(const Progress& progress) {
     const auto now = Clock::now();
     if (mStyle == ProgressStyle::Off || (!last && now - mDrawn < std::chrono::milliseconds(100))) return;
     mDrawn = now;
+    const double seconds = std::chrono::duration<double>(now - mBegan).count();
+    if (mStyle == ProgressStyle::Lines) {
+        if (now - mSaid < kBetweenLines) return;
+        mSaid = now;
+        std::fprintf(stderr, "vdb_synth: %s\n", progressText(progress, seconds).c_str());
+        return;
+    }
     const double fraction = double(progress.done) / double(progress.total);
     if (mStyle == ProgressStyle::Json) {
         const nlohmann::json line{
@@ -68,8 +83,7 @@ void ProgressLog::draw(const Progress& progress) {
     std::string bar(kWidth, ' ');
     for (int i = 0; i < int(fraction * kWidth); ++i) bar[std::size_t(i)] = '#';
     std::fprintf(stderr, "\r\033[K[%s] %3d %% %s%s", bar.c_str(), int(fraction * 100),
-                 printableText(progress.stage.substr(0, 60)).c_str(),
-                 timeLeft(std::chrono::duration<double>(now - mBegan).count(), fraction).c_str());
+                 printableText(progress.stage.substr(0, 60)).c_str(), timeLeft(seconds, fraction).c_str());
     std::fflush(stderr);
     mVisible = true;
 }

@@ -7,7 +7,15 @@
 
 namespace vdbsynth::cli {
 
-enum class ProgressStyle { Off, Bar, Json };
+enum class ProgressStyle {
+    Off,
+    Bar,
+    Lines,  ///< a line a minute, for logs
+    Json
+};
+
+/// How a line of ProgressStyle::Lines reads: "STAGE, 45 %, 2 min left".
+std::string progressText(const Progress& progress, double seconds);
 
 /// One stage as --report lists it.
 struct StageRecord {
@@ -16,8 +24,8 @@ struct StageRecord {
     std::uint64_t peakBytes = 0;  ///< of the process, at the end of the stage
 };
 
-/// Shows progress on standard error (a redrawn bar, or one JSON object per line) and records the times of the
-/// stages for --report.
+/// Shows progress on standard error (a redrawn bar, a line a minute, or one JSON object per line) and records
+/// the times of the stages for --report.
 class ProgressLog {
 public:
     explicit ProgressLog(ProgressStyle style) : mStyle(style) {}
@@ -35,7 +43,7 @@ private:
     ProgressStyle mStyle;
     std::vector<StageRecord> mStages;
     std::string mCurrent;
-    Clock::time_point mBegan = Clock::now(), mDrawn{};
+    Clock::time_point mBegan = Clock::now(), mDrawn{}, mSaid = Clock::now();
     bool mVisible = false;
 };
 

@@ -33,8 +33,9 @@ ProgressStyle progressStyle(const Arguments& arguments) {
     const std::string style = arguments.text("progress");
     if (style == "bar") return ProgressStyle::Bar;
     if (style == "json") return ProgressStyle::Json;
-    return style == "auto" && ::isatty(2) && !arguments.has("quiet") ? ProgressStyle::Bar
-                                                                     : ProgressStyle::Off;
+    if (style == "lines") return ProgressStyle::Lines;
+    if (style == "off" || arguments.has("quiet")) return ProgressStyle::Off;
+    return ::isatty(2) ? ProgressStyle::Bar : ProgressStyle::Lines;
 }
 
 nlohmann::json asJson(const std::vector<std::string>& values) {

@@ -179,7 +179,8 @@ std::string allowedText(const Option& option) {
         case Kind::Process:
             return "such as \"make balls\" or \"make balls --feature 12\", with a feature from 4 to 256";
         case Kind::Direction:
-            return "axis:x|y|z or axis:-x, around:x|y|z, radial, curvature, a grid FILE.vdb[:GRID], or "
+            return "axis:x|y|z or axis:-x, a vector x,y,z that is not 0, around:x|y|z, radial, curvature, a "
+                   "grid FILE.vdb[:GRID], or "
                    "strokes in a .csv, .json or .ply file";
         case Kind::NamedImage:
             return "NAME=FILE with an image, for example roughness=rough.png; a name of letters, digits and "

@@ -3,9 +3,9 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/path.h"
-#include "libvdbsynth/pipeline/analogy/analogy.h"
 #include "libvdbsynth/pipeline/convert/model.h"
 #include "libvdbsynth/pipeline/convert/outputs.h"
+#include "libvdbsynth/pipeline/direction/direction.h"
 
 #include <algorithm>
 #include <charconv>
@@ -214,7 +214,11 @@ std::string normalPath(const Option& option, const std::string& given) {
             if (!readNamedImage(given, image)) refuseValue(option, given);
             return image.first + "=" + fileNameOf(image.second);
         case Kind::Direction:
-            if (parseDirection(given, direction)) return given;
+            if (parseDirection(given, direction))
+                return given.find(',') == std::string::npos
+                           ? given
+                           : joined({exactText(direction.axis.x), exactText(direction.axis.y),
+                                     exactText(direction.axis.z)});
             if (!namesGrid(given) && !isStrokeFile(given)) refuseValue(option, given);
             return fileOnly(given);
         case Kind::Hole:

@@ -240,6 +240,11 @@ void describe(Keywords& keywords, SynthOptions& options) {
                  "over the result: rotation vectors, or angles about z [radians]");
     keywords.add("scaleMap", options.scaleMap, "over the result: scale of the copied geometry, 0.25 to 4");
     keywords.add("guide", options.guide,
+    keywords.add(
+        "direction", options.direction,
+        "over the result: the exemplar is rotated along it, instead of rotationMap; None: not rotated");
+    keywords.add("exemplarDirection", options.exemplarDirection,
+                 "of the exemplars, an axis or a vector; None: as recorded, else axis:x");
                  "over the result: a scalar that controls where parts of the exemplars go");
     keywords.add("exemplarGuides", options.exemplarGuides, "the same scalar over each exemplar");
     keywords.add("guideWeight", options.guideWeight,

@@ -38,6 +38,10 @@ TEST_CASE("normalValue: one form however it was typed", "[tools]") {
     CHECK(normal("synth", "border", "tile") == "tile,tile,tile");
     CHECK(normal("synth", "border", "cut,object,tile") == "cut,object,tile");
     CHECK(normal("crop", "box", "0,0,0,7,8,9") == "0,0,0,7,8,9");
+    CHECK(normal("crop", "box", "0.50w,0,0,1.5w,8,9.0") == "0.5w,0,0,1.5w,8,9");
+    CHECK(normal("synth", "hole", "0w,0w,0w,1.50w,1w,1w") == "0w,0w,0w,1.5w,1w,1w");
+    CHECK(normal("synth", "origin", "1w,2.50w,-3") == "1,2.5,-3");
+    CHECK(normal("synth", "direction", "1,0.50,0") == "1,0.5,0");
     CHECK(normal("make", "size", "64,64,32.0") == "64,64,32");
     CHECK(normal("match", "at", "-5,0,7") == "-5,0,7");
     CHECK(normal("render", "view", "1.0,-1.60,.9") == "1,-1.6,0.9");

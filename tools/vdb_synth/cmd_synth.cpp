@@ -1,5 +1,6 @@
 #include "tools/vdb_synth/carry_options.h"
 #include "tools/vdb_synth/command.h"
+#include "tools/vdb_synth/direction_option.h"
 #include "tools/vdb_synth/index_option.h"
 #include "tools/vdb_synth/map_place.h"
 
@@ -96,10 +97,27 @@ LevelSet holeOf(Run& run, const LevelSet& partial, const ModelOptions& like) {
 void fill(Run& run) {
     const Arguments& arguments = run.arguments;
     run.requireInputs(0, 1);
-    for (const char* option :
-         {"size", "border", "exemplar-box", "exemplar-mask", "drift", "draft", "method", "carry",
-          "carry-blend", "exemplar-map", "guide", "exemplar-guide", "guide-weight", "longest-run",
-          "rotation-map", "scale-map", "half-width", "index-cache"})
+    for (const char* option : {"size",
+                               "origin",
+                               "border",
+                               "exemplar-box",
+                               "exemplar-mask",
+                               "drift",
+                               "draft",
+                               "method",
+                               "carry",
+                               "carry-blend",
+                               "exemplar-map",
+                               "guide",
+                               "exemplar-guide",
+                               "guide-weight",
+                               "longest-run",
+                               "rotation-map",
+                               "scale-map",
+                               "direction",
+                               "exemplar-direction",
+                               "half-width",
+                               "index-cache"})
         if (arguments.has(option))
             throw Error(ErrorCode::InvalidOption,
                         std::string("--") + option + ": cannot be combined with --keep, which fills holes");
@@ -152,6 +170,12 @@ void requireControls(const Arguments& arguments) {
     if (!arguments.has("guide")) return;
     const std::size_t guides = arguments.all("exemplar-guide").size();
     if (guides != arguments.inputs.size())
+    if (arguments.has("direction") && arguments.has("rotation-map"))
+        throw Error(ErrorCode::InvalidOption,
+                    "--direction and --rotation-map: give one of them; both say how the exemplar is rotated");
+    if (arguments.has("exemplar-direction") && !arguments.has("direction"))
+        throw Error(ErrorCode::InvalidOption,
+                    "--exemplar-direction: needs --direction, along which the exemplar is rotated");
         throw Error(ErrorCode::InvalidOption, "--exemplar-guide: given " + std::to_string(guides) +
                                                   " times; give it once for each exemplar, in their order");
 }
@@ -191,6 +215,9 @@ void loadControls(Run& run, double voxelSize, SynthOptions& options) {
     for (const std::string& path : arguments.all("exemplar-guide"))
         options.exemplarGuides.push_back(run.loadGrid("exemplar-guide", path));
     options.guideWeight = arguments.real("guide-weight");
+    if (arguments.has("direction")) options.direction = directionOf(run, "direction");
+    if (arguments.has("exemplar-direction"))
+        options.exemplarDirection = directionOf(run, "exemplar-direction");
 }
 
 void synth(Run& run) {

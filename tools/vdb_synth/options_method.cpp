@@ -147,17 +147,28 @@ std::vector<Option> analogyTable() {
     return {
         option(Kind::Direction, "direction", "SPEC")
             .in(Group::Controls)
-            .says("direction of the texture over B: axis:x, axis:-z, around:y, radial, curvature, a grid of "
+            .says("direction of the texture over B: axis:x, axis:-z, a vector x,y,z, around:y, radial, "
+                  "curvature, a grid of "
                   "vectors or scalars FILE.vdb[:GRID], or strokes (world): .csv rows x,y,z,dx,dy,dz, .json, "
                   ".ply points with normals")
             .otherwiseIs("curvature")
-            .takenBy({"analogy", "texture", "relief", "patch"})
+            .takenBy({"analogy", "texture", "relief", "patch", "synth"})
+            .butFor("synth",
+                    [](Option& o) {
+                        o.says(
+                             "rotate the copied geometry along these directions, instead of --rotation-map: "
+                             "axis:x, axis:-z, a vector x,y,z, around:y, radial, a grid of vectors or "
+                             "scalars FILE.vdb[:GRID], or strokes (world): .csv rows x,y,z,dx,dy,dz, .json, "
+                             ".ply points with normals")
+                            .otherwiseIs("");
+                    })
             .butFor(
                 "patch",
                 [](Option& o) {
                     o.says(
                          "direction of the exemplar's first axis over MODEL, with --onto: axis:x, axis:-z, "
-                         "around:y, radial, curvature, a grid of vectors or scalars FILE.vdb[:GRID], or "
+                         "a vector x,y,z, around:y, radial, curvature, a grid of vectors or scalars "
+                         "FILE.vdb[:GRID], or "
                          "strokes (world): .csv rows x,y,z,dx,dy,dz, .json, .ply points with normals")
                         .otherwiseIs("a smooth field");
                 })
@@ -165,7 +176,8 @@ std::vector<Option> analogyTable() {
                 "relief",
                 [](Option& o) {
                     o.says(
-                         "direction of the sample's rows over TARGET: axis:x, axis:-z, around:y, radial, "
+                         "direction of the sample's rows over TARGET: axis:x, axis:-z, a vector x,y,z, "
+                         "around:y, radial, "
                          "curvature, a grid of vectors or scalars FILE.vdb[:GRID], or strokes (world): .csv "
                          "rows x,y,z,dx,dy,dz, .json, .ply points with normals")
                         .otherwiseIs("a smooth field");
@@ -173,7 +185,8 @@ std::vector<Option> analogyTable() {
             .butFor("texture",
                     [](Option& o) {
                         o.says(
-                             "direction of the images' rows over the target: axis:x, axis:-z, around:y, "
+                             "direction of the images' rows over the target: axis:x, axis:-z, a vector "
+                             "x,y,z, around:y, "
                              "radial, curvature, a grid of vectors or scalars FILE.vdb[:GRID], or strokes "
                              "(world): .csv "
                              "rows x,y,z,dx,dy,dz, .json, .ply points with normals")
@@ -201,7 +214,12 @@ std::vector<Option> analogyTable() {
             .in(Group::Controls)
             .says("where to put the texture: a grid of weights from 0 to 1, or the inside of a model; "
                   "elsewhere B's voxels keep their bits")
-            .takenBy({"analogy", "relief"})
+            .takenBy({"analogy", "relief", "synth"})
+            .butFor("synth",
+                    [](Option& o) {
+                        o.says("with --direction: the exemplar's own, an axis or a vector")
+                            .otherwiseIs("the axis that make wrote into the exemplar, else axis:x");
+                    })
             .butFor(
                 "relief",
                 [](Option& o) {

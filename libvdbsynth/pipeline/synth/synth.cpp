@@ -42,12 +42,14 @@ Controls readControls(const SynthOptions& options, const LevelSets& exemplars, c
     const openvdb::FloatGrid& like = *exemplars.front()->grid;
     ControlFrame frame{plan.map.targetBox, plan.map.targetDomain, {}, &like};
     for (std::size_t axis = 0; axis < 3; ++axis) frame.tiles[axis] = plan.block.border[axis] == Border::Tile;
-    if (options.exemplarMap || options.rotationMap || options.scaleMap)
+    if (options.exemplarMap || rotatesOrScales(options))
         controls.wanted = wantedVariants(options.exemplarMap.get(), options.rotationMap.get(),
                                          options.scaleMap.get(), int(exemplars.size()), frame, ctx);
     if (options.exemplarMask)
         controls.mask = gatherMask(*options.exemplarMask, plan.map.exemplars.front().box, like, ctx);
     if (!options.guide) return controls;
+    if (options.direction)
+        rotateAlong(options, exemplars, frame, plan.map.targetDomain, controls.wanted, ctx);
     controls.guide = sampledScalar(*options.guide, frame, "`guide`", ctx);
     for (std::size_t e = 0; e < exemplars.size(); ++e)
         controls.exemplarGuides.push_back(sampledScalar(
@@ -62,7 +64,7 @@ void choose(const SynthOptions& options, const Controls& controls, SynthPlan& pl
             const RunContext& ctx) {
     if (controls.wanted.empty()) return;
     std::vector<std::int32_t> numbers;
-    if (options.rotationMap || options.scaleMap) {
+    if (rotatesOrScales(options)) {
         ChosenVariants chosen = chooseVariants(controls.wanted, ctx);
         for (ExemplarVariant& variant : chosen.variants) {
             variant.size = variantSize(plan.map.exemplars[std::size_t(variant.exemplar)].box.size(),
@@ -73,7 +75,7 @@ void choose(const SynthOptions& options, const Controls& controls, SynthPlan& pl
         numbers = chosen.number;
         message(ctx, MessageLevel::Detail,
                 std::to_string(chosen.variants.size()) + " rotated and scaled exemplars, within " +
-                    std::to_string(int(chosen.tolerance)) + " degrees of the rotation map");
+                    std::to_string(int(chosen.tolerance)) + " degrees of what is wanted");
     } else {
         for (const WantedVariant& want : controls.wanted) numbers.push_back(want.exemplar);
     }
@@ -147,6 +149,29 @@ void validate(const SynthOptions& options, const LevelSets& exemplars) {
     requireOption(!options.exemplarMap || exemplars.size() > 1, "exemplarMap", "for one exemplar",
                   "used with several exemplars");
     requireOption(bool(options.guide) == !options.exemplarGuides.empty(), "guide", "alone",
+namespace {
+
+void requireOrigin(const Vec3d& origin) {
+    for (int axis = 0; axis < 3; ++axis)
+        requireOption(std::abs(origin[axis]) <= 1e30, "origin", roundedText(origin[axis], 6),
+                      "three numbers of at most 1e30 (world)");
+}
+
+void validateDirections(const SynthOptions& options) {
+    if (options.direction && options.rotationMap)
+        throw Error(ErrorCode::InvalidOption,
+                    "`direction`, `rotationMap`: give one of them; both say how the exemplar is rotated");
+    if (options.direction) requireDirection(*options.direction, "direction");
+    if (!options.exemplarDirection) return;
+    requireOption(options.direction.has_value(), "exemplarDirection", "alone",
+                  "given together with `direction`");
+    requireDirection(*options.exemplarDirection, "exemplarDirection");
+    requireOption(options.exemplarDirection->kind == DirectionSource::Kind::Axis, "exemplarDirection",
+                  "not an axis", "an axis, such as axis:x: one rotation takes it to the direction");
+}
+
+}  // namespace
+
                   "given together with `exemplarGuides`");
     requireOption(options.longestRun >= 0.01 && options.longestRun <= 1, "longestRun",
                   roundedText(options.longestRun, 6), "from 0.01 to 1");
@@ -163,9 +188,10 @@ void validate(const SynthOptions& options, const LevelSets& exemplars) {
                   "exemplarGuides", std::to_string(options.exemplarGuides.size()), "one for each exemplar");
     for (const GridConstPtr& guide : options.exemplarGuides)
         requireOption(guide != nullptr, "exemplarGuides", "null", "a grid for each exemplar");
-    if (exemplars.size() > 1 && !options.exemplarMap && (options.rotationMap || options.scaleMap))
+    if (exemplars.size() > 1 && !options.exemplarMap && rotatesOrScales(options))
         throw Error(ErrorCode::InvalidOption,
-                    "`rotationMap`, `scaleMap`: several exemplars also need an `exemplarMap`");
+                    "`rotationMap`, `scaleMap`, `direction`: several exemplars also need an `exemplarMap`");
+    validateDirections(options);
     for (std::size_t e = 0; e < exemplars.size(); ++e)
         requireModel(exemplars[e],
                      exemplars.size() > 1 ? "exemplar " + std::to_string(e + 1) : "the exemplar");

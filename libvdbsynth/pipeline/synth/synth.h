@@ -1,6 +1,7 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/map/source_map.h"
+#include "libvdbsynth/pipeline/direction/direction.h"
 #include "libvdbsynth/synth/synthesis_options.h"
 #include "libvdbsynth/synth/target_size.h"
 #include "libvdbsynth/vdb/level_set.h"
@@ -26,8 +27,13 @@ struct SynthOptions {
     GridConstPtr exemplarMask;  ///< sources only where this grid is active; its box is the domain unless
                                 ///< exemplarBox is set; null: everywhere; applies to the first exemplar
     /// Controls, in the target's world space (guides of exemplars in the exemplars'); null: none.
-    GridConstPtr exemplarMap;                  ///< which exemplar to use where; needs several
-    GridConstPtr rotationMap, scaleMap;        ///< rotation and scale of the copied geometry
+    GridConstPtr exemplarMap;            ///< which exemplar to use where; needs several
+    GridConstPtr rotationMap, scaleMap;  ///< rotation and scale of the copied geometry
+    /// Instead of rotationMap: everywhere the smallest rotation from the exemplar's direction to this one.
+    /// Where it is 0 nothing is rotated. Around and Radial are about the middle of the result.
+    std::optional<DirectionSource> direction;
+    /// Of all exemplars; must be an Axis. None: the axis recorded in the exemplar (kDirectionKey), else x.
+    std::optional<DirectionSource> exemplarDirection;
     GridConstPtr guide;                        ///< a scalar that controls where parts of the exemplars go
     std::vector<GridConstPtr> exemplarGuides;  ///< the same scalar over each exemplar
     /// Cost of a guide difference of one standard deviation over the exemplars [voxels^2], 0.001 to 1000.

@@ -101,10 +101,12 @@ void requireDefaultMethod(const SynthOptions& options, const SynthPlan& plan) {
             throw Error(ErrorCode::InvalidOption,
                         std::string("`") + name + "`: needs `method` default and no `draft`");
     const bool object = std::count(plan.block.border.begin(), plan.block.border.end(), Border::Object) > 0;
-    if (object && (options.rotationMap || options.scaleMap))
-        throw Error(
-            ErrorCode::InvalidOption,
-            "`rotationMap`, `scaleMap`: an object border cannot be rotated; give `border` cut or tile");
+    if (options.direction && (options.method != SynthesisMethod::Default || options.draft))
+        throw Error(ErrorCode::InvalidOption, "`direction`: needs `method` default and no `draft`");
+    if (object && rotatesOrScales(options))
+        throw Error(ErrorCode::InvalidOption,
+                    "`rotationMap`, `scaleMap`, `direction`: an object border cannot be rotated; give "
+                    "`border` cut or tile");
 }
 
 // Several exemplars: each with its own domain, but along axes that do not grow the first one's extent.
@@ -113,7 +115,7 @@ void addExemplars(const LevelSets& exemplars, const SynthOptions& options, Synth
     std::array<bool, 3> grown{};
     for (int axis = 0; axis < 3; ++axis)
         grown[std::size_t(axis)] = map.targetBox.size()[axis] != map.exemplars.front().box.size()[axis];
-    if (exemplars.size() > 1 || options.rotationMap || options.scaleMap) plan.block.grows = grown;
+    if (exemplars.size() > 1 || rotatesOrScales(options)) plan.block.grows = grown;
     for (std::size_t e = 1; e < exemplars.size(); ++e) {
         MappedExemplar other;
         other.box = other.domain = exemplars[e]->domain;

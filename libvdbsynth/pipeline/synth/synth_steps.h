@@ -2,6 +2,9 @@
 #include "libvdbsynth/pipeline/synth/synth.h"
 #include "libvdbsynth/synth/block_synthesis.h"
 #include "libvdbsynth/vdb/attribute_transfer.h"
+#include "libvdbsynth/vdb/control_grids.h"
+
+#include <openvdb/math/Transform.h>
 
 #include <memory>
 #include <vector>
@@ -16,6 +19,16 @@ struct SynthPlan {
     SourceMap map;
     double bytes = 0;  ///< that the run is expected to need
 };
+
+/// True if places of the result have exemplars of their own rotation or scale.
+bool rotatesOrScales(const SynthOptions& options);
+
+/// Sets the rotations of what is wanted by SynthOptions::direction, along the direction of each one's
+/// exemplar, in the voxels of `frame`; a note says which directions were taken where none was given.
+/// @param wanted  of every variantPlaces(frame)
+/// @throw Error as directionsInSpace (pipeline/direction/place_directions.h)
+void rotateAlong(const SynthOptions& options, const LevelSets& exemplars, const ControlFrame& frame,
+                 const IndexBox& domain, std::vector<WantedVariant>& wanted, const RunContext& ctx);
 
 /// Exemplars as blocks are searched in them (at half the resolution for a draft), and as the result is read
 /// from them; without variants. The same fields but for a draft.

@@ -15,6 +15,7 @@
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "tests/support/makers.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/said.h"
 
 using namespace vdbsynth;
 
@@ -434,6 +435,48 @@ TEST_CASE("synthesize: controls give the same bits for any number of threads, an
     };
     CHECK(run(1, nullptr) == run(2, nullptr));
     std::atomic<bool> cancel{true};
+TEST_CASE("synthesize: the exemplar rotated along a field of directions", "[pipeline][property]") {
+    // Fibres run along x; around the middle they run in circles.
+    const LevelSet fibres = made("fibres", 48);
+    SynthOptions options = sized(2, 2, 1);
+    options.direction = DirectionSource{};
+    options.direction->kind = DirectionSource::Kind::Around;
+    test::Said said;
+    const SynthResult result = synthesize(fibres, options, said.ctx);
+    CHECK(said.noted("is taken to run along axis:x"));
+    const openvdb::FloatGrid& grid = *result.model.grid;
+    double along = 0, across = 0;
+    for (auto it = grid.cbeginValueOn(); it; ++it) {
+        const openvdb::Coord c = it.getCoord();
+        const double x = c.x() - 47.5, y = c.y() - 47.5, r = std::sqrt(x * x + y * y);
+        if (r < 16 || r > 44 || c.z() < 4 || c.z() > 43 || std::abs(*it) > 1) continue;
+        const auto& tree = grid.tree();
+        const double dx =
+            double(tree.getValue(c.offsetBy(1, 0, 0)) - tree.getValue(c.offsetBy(-1, 0, 0))) / 2;
+        const double dy =
+            double(tree.getValue(c.offsetBy(0, 1, 0)) - tree.getValue(c.offsetBy(0, -1, 0))) / 2;
+        along += std::abs(dy * x - dx * y) / r;
+        across += std::abs(dx * x + dy * y) / r;
+    }
+    CHECK(along < 0.5 * across);
+    checkRepeats(result, {&fibres});
+    // The exemplar's own direction: along y nothing rotates along y.
+    options.direction->kind = options.exemplarDirection.emplace().kind = DirectionSource::Kind::Axis;
+    options.direction->axis = options.exemplarDirection->axis = {0, 1, 0};
+    const SynthResult plain = synthesize(fibres, options);
+    REQUIRE(plain.map.variants.size() == 1);
+    CHECK(plain.map.variants[0].plain());
+    // It cannot vary, nor be alone, nor be given beside a map.
+    options.exemplarDirection->kind = DirectionSource::Kind::Radial;
+    CHECK(test::thrownBy([&] { synthesize(fibres, options); }).code == int(ErrorCode::InvalidOption));
+    options.exemplarDirection->kind = DirectionSource::Kind::Axis;
+    options.rotationMap = boxGrid({{0, 0, 0}, {95, 95, 47}}, 1);
+    CHECK(test::thrownBy([&] { synthesize(fibres, options); }).code == int(ErrorCode::InvalidOption));
+    options.rotationMap.reset();
+    options.direction.reset();
+    CHECK(test::thrownBy([&] { synthesize(fibres, options); }).code == int(ErrorCode::InvalidOption));
+}
+
     CHECK(test::thrownBy([&] { run(2, &cancel); }).code == int(ErrorCode::Cancelled));
 }
 

@@ -238,7 +238,13 @@ std::vector<Option> analogyTable() {
             .says(
                 "length on B that the longest side of A's domain covers, instead of --scale: the same at any "
                 "resolution of B")
-            .takenBy({"analogy", "relief"})
+            .takenBy({"analogy", "relief", "texture"})
+            .butFor("texture",
+                    [](Option& o) {
+                        o.says(
+                            "length on TARGET that the longest side of the first IMAGE covers, instead of "
+                            "--scale: the same however far points are apart");
+                    })
             .butFor("relief",
                     [](Option& o) {
                         o.says(

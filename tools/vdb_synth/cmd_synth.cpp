@@ -3,6 +3,8 @@
 #include "tools/vdb_synth/direction_option.h"
 #include "tools/vdb_synth/index_option.h"
 #include "tools/vdb_synth/map_place.h"
+#include "tools/vdb_synth/mask_option.h"
+#include "tools/vdb_synth/world_box.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
@@ -68,7 +70,10 @@ SynthOptions parseOptions(const Arguments& arguments) {
     SynthOptions options;
     readSize(arguments, options);
     readBorder(arguments, options);
-    if (arguments.has("exemplar-box")) options.exemplarBox = arguments.box("exemplar-box");
+    if (arguments.has("origin")) {
+        const std::array<double, 3> origin = arguments.triple("origin");
+        options.origin = Vec3d{origin[0], origin[1], origin[2]};
+    }
     options.block = arguments.whole("block");
     options.levels = arguments.whole("levels");
     options.drift = arguments.whole("drift");
@@ -85,7 +90,7 @@ SynthOptions parseOptions(const Arguments& arguments) {
 
 LevelSet holeOf(Run& run, const LevelSet& partial, const ModelOptions& like) {
     const std::string text = run.arguments.text("hole");
-    IndexBox box;
+    BoxValue box;
     if (text == "auto") return holesAtOpenEdges(partial, run.context);
     if (readBox(text, box)) return boxHole(partial, box, run.context);
     ModelOptions options = like;
@@ -237,8 +242,13 @@ void synth(Run& run) {
     modelOptions.carry = true;
     std::vector<LevelSet> exemplars = loadExemplars(run, modelOptions);
     keepNamedAttributes(run.arguments, exemplars);
-    withWorldSizes(run.arguments, voxelSizeOf(*exemplars.front().grid), options);
-    if (run.arguments.has("exemplar-mask")) options.exemplarMask = run.loadGrid("exemplar-mask");
+    const auto& first = *exemplars.front().grid;
+    withWorldSizes(run.arguments, voxelSizeOf(first), options);
+    if (run.arguments.has("exemplar-box"))
+        options.exemplarBox = voxelsOf(run.arguments.box("exemplar-box"), transformOf(first),
+                                       "--exemplar-box " + run.arguments.text("exemplar-box"));
+    if (run.arguments.has("exemplar-mask"))
+        options.exemplarMask = maskOf(run, "exemplar-mask", voxelSizeOf(first));
     loadControls(run, voxelSizeOf(*exemplars.front().grid), options);
     const SynthResult result = synthesize(pointersTo(exemplars), options, run.context);
     writeWithMap(run, result.model, result.map, place, paths, outputs);

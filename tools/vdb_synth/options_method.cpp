@@ -8,7 +8,9 @@ namespace {
 std::vector<Option> resultTable() {
     return {
         option(Kind::Sizes, "size", "X,Y,Z")
-            .says("size of the result: voxels, or multiples of the exemplar's domain such as 2x,2x,1x")
+            .says("size of the result: voxels, multiples of the exemplar's domain such as 2x,2x,1x, or "
+                  "lengths such "
+                  "as 2.5w (world)")
             .takenBy({"synth"}),
         option(Kind::WholeTriple, "size", "X,Y,Z")
             .from(8, 4096)
@@ -33,11 +35,17 @@ std::vector<Option> resultTable() {
             .otherwiseIs("cut where a domain is recorded or a clip left the model cut open, else object")
             .takenBy({"synth"}),
         option(Kind::Box, "box", "BOX")
-            .measuredIn(Unit::Voxels)
-            .says("i,j,k,I,J,K in index space, both corners inclusive")
+            .says("i,j,k,I,J,K: voxels in index space, both corners inclusive, or lengths such as 1.5w "
+                  "(world): "
+                  "voxels with their centres from the lower up to, not on, the upper")
             .takenBy({"crop", "mask"})
             .butFor("mask",
-                    [](Option& o) { o.says("for box: i,j,k,I,J,K in index space, both corners inclusive"); }),
+                    [](Option& o) {
+                        o.says(
+                            "for box: i,j,k,I,J,K: voxels in index space, both corners inclusive, or lengths "
+                            "such as 1.5w (world): voxels with their centres from the lower up to, not on, "
+                            "the upper");
+                    }),
         option(Kind::Triple, "center", "X,Y,Z")
             .measuredIn(Unit::World)
             .says("for ball: its centre")
@@ -98,8 +106,9 @@ std::vector<Option> synthTable() {
 std::vector<Option> controlTable() {
     return {
         option(Kind::Box, "exemplar-box", "BOX")
-            .measuredIn(Unit::Voxels)
-            .says("domain i,j,k,I,J,K in the exemplar's index space, both corners inclusive")
+            .says("domain i,j,k,I,J,K: voxels in the exemplar's index space, both corners inclusive, or "
+                  "lengths "
+                  "such as 1.5w (world): voxels with their centres from the lower up to, not on, the upper")
             .takenBy({"synth"}),
         grid("exemplar-mask")
             .says("copy only from where this grid is active; its box is the domain (of the first exemplar)")
@@ -138,7 +147,8 @@ std::vector<Option> controlTable() {
             .takenBy({"synth"}),
         option(Kind::Hole, "hole", "MODEL|BOX|auto")
             .says("what to fill with --keep: the inside of a model, a box i,j,k,I,J,K of the kept model's "
-                  "voxels, or auto: 3 voxels around the surface that closed its open edges")
+                  "voxels (or world, with a w), or auto: 3 voxels around the surface that closed its open "
+                  "edges")
             .takenBy({"synth"}),
     };
 }

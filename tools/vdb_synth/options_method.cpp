@@ -12,6 +12,19 @@ std::vector<Option> resultTable() {
                   "lengths such "
                   "as 2.5w (world)")
             .takenBy({"synth"}),
+        option(Kind::Triple, "origin", "X,Y,Z")
+            .measuredIn(Unit::World)
+            .says("where the result's minimum corner goes, half a voxel outside its first voxel's centre")
+            .otherwiseIs("where that of the exemplar's domain is")
+            .takenBy({"synth", "repeat"})
+            .butFor("repeat",
+                    [](Option& o) {
+                        o.says(
+                             "of a map of synth: where the result's minimum corner goes, half a voxel "
+                             "outside its "
+                             "first voxel's centre")
+                            .otherwiseIs("as far from the exemplar's as in the map's run");
+                    }),
         option(Kind::WholeTriple, "size", "X,Y,Z")
             .from(8, 4096)
             .measuredIn(Unit::Voxels)

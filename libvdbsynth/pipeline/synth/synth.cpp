@@ -40,7 +40,10 @@ Controls readControls(const SynthOptions& options, const LevelSets& exemplars, c
                       const RunContext& ctx) {
     Controls controls;
     const openvdb::FloatGrid& like = *exemplars.front()->grid;
-    ControlFrame frame{plan.map.targetBox, plan.map.targetDomain, {}, &like};
+    // Controls lie where the result does.
+    const openvdb::FloatGrid::ConstPtr there =
+        like.copyReplacingTransform(movedTransform(like, plan.map.moved));
+    ControlFrame frame{plan.map.targetBox, plan.map.targetDomain, {}, there.get()};
     for (std::size_t axis = 0; axis < 3; ++axis) frame.tiles[axis] = plan.block.border[axis] == Border::Tile;
     if (options.exemplarMap || rotatesOrScales(options))
         controls.wanted = wantedVariants(options.exemplarMap.get(), options.rotationMap.get(),
@@ -196,9 +199,8 @@ void validateDirections(const SynthOptions& options) {
         requireModel(exemplars[e],
                      exemplars.size() > 1 ? "exemplar " + std::to_string(e + 1) : "the exemplar");
     if (options.exemplarBox) requireBox(*options.exemplarBox, "exemplarBox");
-    if (!options.exemplarMask) return;
-    requireMaskFor(*options.exemplarMask, *exemplars.front()->grid);
-    activeBox(*options.exemplarMask);
+    if (options.origin) requireOrigin(*options.origin);
+    if (options.exemplarMask) activeBox(*options.exemplarMask);
 }
 
 SynthResult synthesize(const LevelSets& exemplars, const SynthOptions& options, const RunContext& ctx) {

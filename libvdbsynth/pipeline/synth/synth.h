@@ -16,6 +16,9 @@ namespace vdbsynth {
 struct SynthOptions {
     TargetSize size = TargetSize::multiples(2, 2, 2);  ///< at least the domain, at most 1048576 voxels a side
     std::optional<IndexBox> exemplarBox;               ///< overrides the (first) exemplar's domain
+    /// [world] where the minimum corner of the result's domain goes, half a voxel outside its first voxel;
+    /// none: where that of the first exemplar's domain is.
+    std::optional<Vec3d> origin;
     std::array<std::optional<Border>, 3>
         border;      ///< empty: cut where a domain is recorded or given, else object
     int block = 0;   ///< [voxels] side of the matched blocks, 4 to 256; 0: from the exemplar, at most 16
@@ -58,9 +61,9 @@ struct SynthResult {
 
 /// More geometry that looks like the exemplar: the block synthesis of synth/block_synthesis.h with the
 /// contract's domain and borders, the result rebuilt to a valid narrow band. The target has the first
-/// exemplar's position, voxels and multiples; along axes at 1x the other exemplars are read over the first
-/// one's extent. With rotation or scale maps, exemplars are resampled for each of at most 24 rotations and
-/// scales, and all of those are sources.
+/// exemplar's position (but `origin`), voxels and multiples; along axes at 1x the other exemplars are read
+/// over the first one's extent. With rotation or scale maps, exemplars are resampled for each of at most 24
+/// rotations and scales, and all of those are sources.
 /// @throw Error InvalidOption, Unusable (block larger than the domain, ...), EmptyInput (nothing in the
 /// domain), ShapeMismatch (exemplars of different voxel sizes), Memory, Cancelled
 /// @par Repeats same bits for (exemplars, options, ctx.seed), any number of threads

@@ -6,6 +6,7 @@
 #include "libvdbsynth/distance/widen_band.h"
 #include "libvdbsynth/grid/islands.h"
 #include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/mask.h"
 
 #include <openvdb/openvdb.h>
@@ -100,9 +101,9 @@ void requireDefaultMethod(const SynthOptions& options, const SynthPlan& plan) {
         if (grid && (options.method != SynthesisMethod::Default || options.draft))
             throw Error(ErrorCode::InvalidOption,
                         std::string("`") + name + "`: needs `method` default and no `draft`");
-    const bool object = std::count(plan.block.border.begin(), plan.block.border.end(), Border::Object) > 0;
     if (options.direction && (options.method != SynthesisMethod::Default || options.draft))
         throw Error(ErrorCode::InvalidOption, "`direction`: needs `method` default and no `draft`");
+    const bool object = std::count(plan.block.border.begin(), plan.block.border.end(), Border::Object) > 0;
     if (object && rotatesOrScales(options))
         throw Error(ErrorCode::InvalidOption,
                     "`rotationMap`, `scaleMap`, `direction`: an object border cannot be rotated; give "
@@ -197,6 +198,7 @@ SynthPlan planSynthesis(const LevelSets& exemplars, const SynthOptions& options,
     plan.map.exemplars = {first};
     requireDefaultMethod(options, plan);
     padForTiling(plan, options);
+    if (options.origin) plan.map.moved = movedTo(*options.origin, plan.map.targetDomain, *exemplar.grid);
     plan.block.size = plan.map.targetBox.size();
     plan.block.block = options.block;
     plan.block.levels = options.levels;
@@ -223,6 +225,17 @@ SynthPlan planSynthesis(const LevelSets& exemplars, const SynthOptions& options,
     plan.bytes = requireMemoryFor(ctx, plan.map, exemplars);
     identify(exemplars, plan.map);
     return plan;
+}
+
+Vec3d movedTo(const Vec3d& origin, const IndexBox& domain, const openvdb::FloatGrid& like) {
+    const openvdb::Vec3d corner(domain.min.x - 0.5, domain.min.y - 0.5, domain.min.z - 0.5);
+    return origin - fromVec(like.transform().indexToWorld(corner));
+}
+
+openvdb::math::Transform::Ptr movedTransform(const openvdb::FloatGrid& like, const Vec3d& by) {
+    const openvdb::math::Transform::Ptr transform = like.transform().copy();
+    transform->postTranslate(toVec(by));
+    return transform;
 }
 
 double requireMemoryFor(const RunContext& ctx, const SourceMap& map, const LevelSets& exemplars) {
@@ -296,6 +309,7 @@ LevelSet finishSynthesis(const SourceMap& map, BrickField voted, const ExemplarF
     close.draft = map.draft && map.halfWidth == kHalfWidth;
     const BrickField band = closedBand(field, corner, close, ctx);
     model.grid = levelSetFrom(band, map.halfWidth, like, "the result", ctx);
+    if (dot(map.moved, map.moved) > 0) model.grid->setTransform(movedTransform(like, map.moved));
     model.domain = map.targetDomain;
     model.domainRecorded = true;
     stampLevelSet(model);

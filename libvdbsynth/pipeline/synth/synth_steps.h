@@ -43,6 +43,12 @@ SynthPlan planSynthesis(const LevelSets& exemplars, const SynthOptions& options,
 /// @return bytes that a result through a map needs @throw Error Memory
 double requireMemoryFor(const RunContext& ctx, const SourceMap& map, const LevelSets& exemplars);
 
+/// How far a domain is moved so that its minimum corner comes to `origin`. [world]
+Vec3d movedTo(const Vec3d& origin, const IndexBox& domain, const openvdb::FloatGrid& like);
+
+/// A grid's transform, moved. [world]
+openvdb::math::Transform::Ptr movedTransform(const openvdb::FloatGrid& like, const Vec3d& by);
+
 SearchedFields gatherExemplars(const SourceMap& map, const LevelSets& exemplars, const RunContext& ctx);
 
 /// The fields that a map's result is read from, a draft's too; without variants.

@@ -286,6 +286,37 @@ TEST_CASE("synthesize: no part is smaller than the exemplar's smallest", "[pipel
             ctx.seed = seed;
             const Components made = parts(synthesize(exemplar, sized(2, 2, 1), ctx).model);
             REQUIRE_FALSE(made.sizes.empty());
+TEST_CASE("synthesize: the result's corner goes to an origin", "[pipeline][property]") {
+    const LevelSet exemplar = made("balls", 40, 0, 0.5);
+    SynthOptions options = sized(1.5, 1, 1);
+    const SynthResult plain = synthesize(exemplar, options);
+    options.origin = Vec3d{10, -2.25, 3.1};
+    const SynthResult moved = synthesize(exemplar, options);
+    const openvdb::Vec3d corner = moved.model.grid->transform().indexToWorld(openvdb::Vec3d(
+        moved.model.domain.min.x - 0.5, moved.model.domain.min.y - 0.5, moved.model.domain.min.z - 0.5));
+    CHECK((corner - openvdb::Vec3d(10, -2.25, 3.1)).length() < 1e-9);
+    CHECK(moved.model.domain == plain.model.domain);
+    const openvdb::FloatGrid::ConstPtr back =
+        moved.model.grid->copyReplacingTransform(plain.model.grid->transform().copy());
+    CHECK(levelSetHash(*back) == levelSetHash(*plain.model.grid));
+    checkRepeats(moved, {&exemplar});
+    RepeatOptions again;
+    again.origin = Vec3d{0, 0, 0};
+    const LevelSet elsewhere = repeatMap(moved.map, {&exemplar}, again);
+    CHECK(elsewhere.grid->transform().indexToWorld(openvdb::Vec3d(-0.5)).length() < 1e-9);
+    // Controls are read where the result lies.
+    const LevelSet fibres = made("fibres", 48);
+    SynthOptions turned = sized(2, 2, 1);
+    turned.rotationMap = boxGrid({{0, 0, 0}, {47, 95, 47}}, 1.5f);
+    const std::string there = levelSetHash(*synthesize(fibres, turned).model.grid);
+    turned.origin = Vec3d{499.5, -0.5, -0.5};
+    turned.rotationMap = boxGrid({{500, 0, 0}, {547, 95, 47}}, 1.5f);
+    const SynthResult far = synthesize(fibres, turned);
+    const openvdb::FloatGrid::ConstPtr home =
+        far.model.grid->copyReplacingTransform(fibres.grid->transform().copy());
+    CHECK(levelSetHash(*home) == there);
+}
+
             if (!made.interior.empty()) CHECK(made.interior.back() >= least);
         }
     }

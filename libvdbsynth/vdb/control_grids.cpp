@@ -8,7 +8,7 @@
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/grid_reader.h"
 #include "libvdbsynth/vdb/level_set.h"
-#include "libvdbsynth/vdb/read/field_kind.h"
+#include "libvdbsynth/vdb/mask.h"
 #include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 
@@ -126,10 +126,9 @@ constexpr float kFade = 3;  // [voxels] of the frame, inside a solid mask
 // A mask that is a solid, as a level set with distances on the lattice of its frame; null: it holds numbers.
 FloatGridConstPtr solidMask(const openvdb::GridBase& grid, const ControlFrame& frame, const std::string& what,
                             const RunContext& ctx) {
-    const FloatGridPtr field = asFloat(openvdb::ConstPtrCast<openvdb::GridBase>(grid.copyGrid()));
-    if (!field || kindOf(*field, ctx) == FieldKind::Density) return nullptr;
-    const LevelSet solid = modelFromGrids(what, {field}, {}, ctx);
-    return resampleLevelSet(*solid.grid, *frame.like, kFade + 2, what, ctx);
+    const FloatGridConstPtr solid = solidOfMask(grid, what, ctx);
+    if (!solid) return nullptr;
+    return resampleLevelSet(*solid, *frame.like, kFade + 2, what, ctx);
 }
 
 }  // namespace
@@ -151,6 +150,7 @@ BrickField sampledWeight(const openvdb::GridBase& grid, const ControlFrame& fram
         }
     });
 }
+
 namespace {
 
 // The middle voxel of every cell, within the box.
@@ -175,7 +175,6 @@ std::vector<Vec3d> variantPlaces(const ControlFrame& frame) {
     for (const Index3& voxel : variantVoxels(frame.box)) places.push_back(worldOf(voxel));
     return places;
 }
-
 
 std::vector<WantedVariant> wantedVariants(const openvdb::GridBase* exemplarMap,
                                           const openvdb::GridBase* rotation, const openvdb::GridBase* scale,

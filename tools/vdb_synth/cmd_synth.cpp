@@ -92,7 +92,8 @@ LevelSet holeOf(Run& run, const LevelSet& partial, const ModelOptions& like) {
     const std::string text = run.arguments.text("hole");
     BoxValue box;
     if (text == "auto") return holesAtOpenEdges(partial, run.context);
-    if (readBox(text, box)) return boxHole(partial, box, run.context);
+    if (readBox(text, box))
+        return boxHole(partial, voxelsOf(box, transformOf(*partial.grid), "--hole " + text), run.context);
     ModelOptions options = like;
     options.grid.clear();
     return run.load(text, options);
@@ -169,18 +170,18 @@ void fill(Run& run) {
 void requireControls(const Arguments& arguments) {
     if (arguments.has("exemplar-map") && arguments.inputs.size() < 2)
         throw Error(ErrorCode::InvalidOption, "--exemplar-map: chooses between exemplars; give at least two");
-    if (arguments.has("guide") != arguments.has("exemplar-guide"))
-        throw Error(ErrorCode::InvalidOption,
-                    "--guide and --exemplar-guide: give both, the same scalar over result and exemplar");
-    if (!arguments.has("guide")) return;
-    const std::size_t guides = arguments.all("exemplar-guide").size();
-    if (guides != arguments.inputs.size())
     if (arguments.has("direction") && arguments.has("rotation-map"))
         throw Error(ErrorCode::InvalidOption,
                     "--direction and --rotation-map: give one of them; both say how the exemplar is rotated");
     if (arguments.has("exemplar-direction") && !arguments.has("direction"))
         throw Error(ErrorCode::InvalidOption,
                     "--exemplar-direction: needs --direction, along which the exemplar is rotated");
+    if (arguments.has("guide") != arguments.has("exemplar-guide"))
+        throw Error(ErrorCode::InvalidOption,
+                    "--guide and --exemplar-guide: give both, the same scalar over result and exemplar");
+    if (!arguments.has("guide")) return;
+    const std::size_t guides = arguments.all("exemplar-guide").size();
+    if (guides != arguments.inputs.size())
         throw Error(ErrorCode::InvalidOption, "--exemplar-guide: given " + std::to_string(guides) +
                                                   " times; give it once for each exemplar, in their order");
 }
@@ -214,15 +215,15 @@ void loadControls(Run& run, double voxelSize, SynthOptions& options) {
         options.exemplarMap = asControl(run.load(map, model).grid);
     }
     if (arguments.has("rotation-map")) options.rotationMap = run.loadGrid("rotation-map");
+    if (arguments.has("direction")) options.direction = directionOf(run, "direction");
+    if (arguments.has("exemplar-direction"))
+        options.exemplarDirection = directionOf(run, "exemplar-direction");
     if (arguments.has("scale-map")) options.scaleMap = run.loadGrid("scale-map");
     if (!arguments.has("guide")) return;
     options.guide = run.loadGrid("guide");
     for (const std::string& path : arguments.all("exemplar-guide"))
         options.exemplarGuides.push_back(run.loadGrid("exemplar-guide", path));
     options.guideWeight = arguments.real("guide-weight");
-    if (arguments.has("direction")) options.direction = directionOf(run, "direction");
-    if (arguments.has("exemplar-direction"))
-        options.exemplarDirection = directionOf(run, "exemplar-direction");
 }
 
 void synth(Run& run) {

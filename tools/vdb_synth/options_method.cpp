@@ -123,8 +123,10 @@ std::vector<Option> controlTable() {
                   "lengths "
                   "such as 1.5w (world): voxels with their centres from the lower up to, not on, the upper")
             .takenBy({"synth"}),
-        grid("exemplar-mask")
-            .says("copy only from where this grid is active; its box is the domain (of the first exemplar)")
+        option(Kind::ModelOrGrid, "exemplar-mask", "FILE")
+            .says("copy only from inside this model, or where this grid of a .vdb is active, in any voxels; "
+                  "its "
+                  "box is the domain (of the first exemplar)")
             .takenBy({"synth"}),
         option(Kind::ModelOrGrid, "exemplar-map", "FILE")
             .says("which exemplar to use where in the result: a .vdb grid of labels (0: the first exemplar), "
@@ -219,7 +221,12 @@ std::vector<Option> analogyTable() {
             .in(Group::Controls)
             .says("direction of the texture over A, given in the same ways")
             .otherwiseIs("the grid direction that make wrote into A, else curvature")
-            .takenBy({"analogy", "relief"})
+            .takenBy({"analogy", "relief", "synth"})
+            .butFor("synth",
+                    [](Option& o) {
+                        o.says("with --direction: the exemplar's own, an axis or a vector")
+                            .otherwiseIs("the axis that make wrote into the exemplar, else axis:x");
+                    })
             .butFor("relief",
                     [](Option& o) {
                         o.says("direction of the relief over a SAMPLE, given in the same ways")
@@ -237,12 +244,7 @@ std::vector<Option> analogyTable() {
             .in(Group::Controls)
             .says("where to put the texture: a grid of weights from 0 to 1, or the inside of a model; "
                   "elsewhere B's voxels keep their bits")
-            .takenBy({"analogy", "relief", "synth"})
-            .butFor("synth",
-                    [](Option& o) {
-                        o.says("with --direction: the exemplar's own, an axis or a vector")
-                            .otherwiseIs("the axis that make wrote into the exemplar, else axis:x");
-                    })
+            .takenBy({"analogy", "relief"})
             .butFor(
                 "relief",
                 [](Option& o) {
@@ -337,9 +339,10 @@ std::vector<Option> matchTable() {
             .measuredIn(Unit::Voxels)
             .says("minimum corner of the block in QUERY's index space")
             .takenBy({"match"}),
-        grid("mask")
+        option(Kind::ModelOrGrid, "mask", "FILE")
             .in(Group::Controls)
-            .says("compare only samples where this grid is active, in QUERY's index space")
+            .says("compare only samples of QUERY inside this model, or where this grid of a .vdb is active, "
+                  "in any voxels")
             .takenBy({"match"}),
         whole("count", "K", 1, 100000).says("number of matches").initially("1").takenBy({"match"}),
         real("tolerance", "E", 0, 100)

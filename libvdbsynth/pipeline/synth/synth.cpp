@@ -48,11 +48,11 @@ Controls readControls(const SynthOptions& options, const LevelSets& exemplars, c
     if (options.exemplarMap || rotatesOrScales(options))
         controls.wanted = wantedVariants(options.exemplarMap.get(), options.rotationMap.get(),
                                          options.scaleMap.get(), int(exemplars.size()), frame, ctx);
+    if (options.direction)
+        rotateAlong(options, exemplars, frame, plan.map.targetDomain, controls.wanted, ctx);
     if (options.exemplarMask)
         controls.mask = gatherMask(*options.exemplarMask, plan.map.exemplars.front().box, like, ctx);
     if (!options.guide) return controls;
-    if (options.direction)
-        rotateAlong(options, exemplars, frame, plan.map.targetDomain, controls.wanted, ctx);
     controls.guide = sampledScalar(*options.guide, frame, "`guide`", ctx);
     for (std::size_t e = 0; e < exemplars.size(); ++e)
         controls.exemplarGuides.push_back(sampledScalar(
@@ -119,7 +119,9 @@ void gatherFields(const SynthOptions& options, const LevelSets& exemplars, Contr
     plan.block.guideWeight = float(options.guideWeight);
 }
 
-SynthResult synthesized(const LevelSets& exemplars, const SynthOptions& options, const RunContext& ctx) {
+SynthResult synthesized(const LevelSets& exemplars, SynthOptions options, const RunContext& ctx) {
+    if (options.exemplarMask)
+        options.exemplarMask = maskOn(options.exemplarMask, *exemplars.front()->grid, "`exemplarMask`", ctx);
     SynthPlan plan = planSynthesis(exemplars, options, ctx);
     Held held;
     Controls controls = readControls(options, exemplars, plan, ctx);
@@ -147,11 +149,6 @@ SynthResult synthesized(const LevelSets& exemplars, const SynthOptions& options,
 
 }  // namespace
 
-void validate(const SynthOptions& options, const LevelSets& exemplars) {
-    if (exemplars.empty()) throw Error(ErrorCode::InvalidOption, "synthesis needs at least one exemplar");
-    requireOption(!options.exemplarMap || exemplars.size() > 1, "exemplarMap", "for one exemplar",
-                  "used with several exemplars");
-    requireOption(bool(options.guide) == !options.exemplarGuides.empty(), "guide", "alone",
 namespace {
 
 void requireOrigin(const Vec3d& origin) {
@@ -175,6 +172,11 @@ void validateDirections(const SynthOptions& options) {
 
 }  // namespace
 
+void validate(const SynthOptions& options, const LevelSets& exemplars) {
+    if (exemplars.empty()) throw Error(ErrorCode::InvalidOption, "synthesis needs at least one exemplar");
+    requireOption(!options.exemplarMap || exemplars.size() > 1, "exemplarMap", "for one exemplar",
+                  "used with several exemplars");
+    requireOption(bool(options.guide) == !options.exemplarGuides.empty(), "guide", "alone",
                   "given together with `exemplarGuides`");
     requireOption(options.longestRun >= 0.01 && options.longestRun <= 1, "longestRun",
                   roundedText(options.longestRun, 6), "from 0.01 to 1");

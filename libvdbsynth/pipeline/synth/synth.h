@@ -27,8 +27,9 @@ struct SynthOptions {
                      ///< its length, 0 to 2^20
     SynthesisMethod method = SynthesisMethod::Default;
     bool draft = false;         ///< synthesizes at half the resolution and reads the result at the full one
-    GridConstPtr exemplarMask;  ///< sources only where this grid is active; its box is the domain unless
-                                ///< exemplarBox is set; null: everywhere; applies to the first exemplar
+    GridConstPtr exemplarMask;  ///< sources only where this grid is active, of a solid inside (maskOn, any
+                                ///< voxels); its box is the domain unless exemplarBox is set; null:
+                                ///< everywhere; applies to the first exemplar
     /// Controls, in the target's world space (guides of exemplars in the exemplars'); null: none.
     GridConstPtr exemplarMap;            ///< which exemplar to use where; needs several
     GridConstPtr rotationMap, scaleMap;  ///< rotation and scale of the copied geometry
@@ -48,7 +49,7 @@ struct SynthOptions {
 };
 
 /// @throw Error InvalidOption (a field out of its range, fields that contradict each other, null exemplars or
-/// guides), ShapeMismatch (a mask in other voxels than the exemplar's), EmptyInput (an empty mask), and what
+/// guides), EmptyInput (an empty mask), and what
 /// requireModel (vdb/level_set.h) throws. synthesize checks the rest, which depends on domains and blocks,
 /// also before any work.
 void validate(const SynthOptions& options, const std::vector<const LevelSet*>& exemplars);

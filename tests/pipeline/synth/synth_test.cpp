@@ -1,6 +1,7 @@
 #include "libvdbsynth/pipeline/synth/synth.h"
 
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/LevelSetPlatonic.h>
 #include <catch2/catch.hpp>
 
 #include "libvdbsynth/grid/components.h"
@@ -14,8 +15,8 @@
 #include "libvdbsynth/vdb/source_map_grids.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "tests/support/makers.h"
-#include "tests/support/temporary_folder.h"
 #include "tests/support/said.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace vdbsynth;
 
@@ -157,6 +158,24 @@ TEST_CASE("synthesize: sizes in voxels, an exemplar box, a mask", "[pipeline][pr
     CHECK(test::contains(test::thrownBy([&] { synthesize(exemplar, options); }).message, "`exemplarMask`"));
 }
 
+TEST_CASE("synthesize: a mask in other voxels, and a solid as a mask", "[pipeline][property]") {
+    const LevelSet exemplar = made("balls", 64);
+    SynthOptions options;
+    options.size = {Extent::voxels(70), Extent::voxels(50), Extent::multiple(1)};
+    options.block = 8;
+    options.exemplarMask = boxMask({{4, 4, 4}, {30, 43, 35}}, 1);
+    const std::string own = levelSetHash(*synthesize(exemplar, options).model.grid);
+    // The same box in halves of voxels: those nearest to the centres 4 to 30.
+    options.exemplarMask = boxMask({{8, 8, 8}, {61, 87, 71}}, 0.5);
+    CHECK(levelSetHash(*synthesize(exemplar, options).model.grid) == own);
+    // A box as a level set, not its band.
+    FloatGridPtr solid = openvdb::tools::createLevelSetBox<openvdb::FloatGrid>(
+        openvdb::BBoxd({3.5, 3.5, 3.5}, {30.5, 43.5, 35.5}),
+        *openvdb::math::Transform::createLinearTransform(0.7), 2);
+    options.exemplarMask = solid;
+    CHECK(levelSetHash(*synthesize(exemplar, options).model.grid) == own);
+}
+
 TEST_CASE("synthesize: attributes are transferred through the map, and repeated", "[pipeline][property]") {
     LevelSet exemplar = made("balls", 40);
     // A number that tells the voxel it lies on, and a colour; and a grid of an old source map, which stays
@@ -267,25 +286,6 @@ void checkRepeats(const SynthResult& result, const std::vector<const LevelSet*>&
 
 }  // namespace
 
-TEST_CASE("synthesize: no part is smaller than the exemplar's smallest", "[pipeline][property]") {
-    for (const char* kind : {"balls", "chainmail"}) {
-        INFO(kind);
-        const LevelSet exemplar = made(kind, 48);
-        const auto parts = [](const LevelSet& model) {
-            const IndexBox& box = model.domain;
-            return findComponents(Occupancy::fromField(gatherBricks(
-                                      *model.grid, box, float(1 / voxelSizeOf(*model.grid)), 3.f)),
-                                  Neighbours::All);
-        };
-        const Components of = parts(exemplar);
-        // Half a block a side is the largest island.
-        std::uint64_t least = 8 * 8 * 8;
-        if (!of.interior.empty()) least = std::min(least, of.interior.back());
-        for (std::uint64_t seed : {1, 2, 3}) {
-            RunContext ctx;
-            ctx.seed = seed;
-            const Components made = parts(synthesize(exemplar, sized(2, 2, 1), ctx).model);
-            REQUIRE_FALSE(made.sizes.empty());
 TEST_CASE("synthesize: the result's corner goes to an origin", "[pipeline][property]") {
     const LevelSet exemplar = made("balls", 40, 0, 0.5);
     SynthOptions options = sized(1.5, 1, 1);
@@ -317,6 +317,25 @@ TEST_CASE("synthesize: the result's corner goes to an origin", "[pipeline][prope
     CHECK(levelSetHash(*home) == there);
 }
 
+TEST_CASE("synthesize: no part is smaller than the exemplar's smallest", "[pipeline][property]") {
+    for (const char* kind : {"balls", "chainmail"}) {
+        INFO(kind);
+        const LevelSet exemplar = made(kind, 48);
+        const auto parts = [](const LevelSet& model) {
+            const IndexBox& box = model.domain;
+            return findComponents(Occupancy::fromField(gatherBricks(
+                                      *model.grid, box, float(1 / voxelSizeOf(*model.grid)), 3.f)),
+                                  Neighbours::All);
+        };
+        const Components of = parts(exemplar);
+        // Half a block a side is the largest island.
+        std::uint64_t least = 8 * 8 * 8;
+        if (!of.interior.empty()) least = std::min(least, of.interior.back());
+        for (std::uint64_t seed : {1, 2, 3}) {
+            RunContext ctx;
+            ctx.seed = seed;
+            const Components made = parts(synthesize(exemplar, sized(2, 2, 1), ctx).model);
+            REQUIRE_FALSE(made.sizes.empty());
             if (!made.interior.empty()) CHECK(made.interior.back() >= least);
         }
     }
@@ -416,6 +435,48 @@ TEST_CASE("synthesize: rotated and scaled by maps", "[pipeline][property]") {
     CHECK(test::thrownBy([&] { synthesize(fibres, options); }).code == int(ErrorCode::InvalidOption));
 }
 
+TEST_CASE("synthesize: the exemplar rotated along a field of directions", "[pipeline][property]") {
+    // Fibres run along x; around the middle they run in circles.
+    const LevelSet fibres = made("fibres", 48);
+    SynthOptions options = sized(2, 2, 1);
+    options.direction = DirectionSource{};
+    options.direction->kind = DirectionSource::Kind::Around;
+    test::Said said;
+    const SynthResult result = synthesize(fibres, options, said.ctx);
+    CHECK(said.noted("is taken to run along axis:x"));
+    const openvdb::FloatGrid& grid = *result.model.grid;
+    double along = 0, across = 0;
+    for (auto it = grid.cbeginValueOn(); it; ++it) {
+        const openvdb::Coord c = it.getCoord();
+        const double x = c.x() - 47.5, y = c.y() - 47.5, r = std::sqrt(x * x + y * y);
+        if (r < 16 || r > 44 || c.z() < 4 || c.z() > 43 || std::abs(*it) > 1) continue;
+        const auto& tree = grid.tree();
+        const double dx =
+            double(tree.getValue(c.offsetBy(1, 0, 0)) - tree.getValue(c.offsetBy(-1, 0, 0))) / 2;
+        const double dy =
+            double(tree.getValue(c.offsetBy(0, 1, 0)) - tree.getValue(c.offsetBy(0, -1, 0))) / 2;
+        along += std::abs(dy * x - dx * y) / r;
+        across += std::abs(dx * x + dy * y) / r;
+    }
+    CHECK(along < 0.5 * across);
+    checkRepeats(result, {&fibres});
+    // The exemplar's own direction: along y nothing rotates along y.
+    options.direction->kind = options.exemplarDirection.emplace().kind = DirectionSource::Kind::Axis;
+    options.direction->axis = options.exemplarDirection->axis = {0, 1, 0};
+    const SynthResult plain = synthesize(fibres, options);
+    REQUIRE(plain.map.variants.size() == 1);
+    CHECK(plain.map.variants[0].plain());
+    // It cannot vary, nor be alone, nor be given beside a map.
+    options.exemplarDirection->kind = DirectionSource::Kind::Radial;
+    CHECK(test::thrownBy([&] { synthesize(fibres, options); }).code == int(ErrorCode::InvalidOption));
+    options.exemplarDirection->kind = DirectionSource::Kind::Axis;
+    options.rotationMap = boxGrid({{0, 0, 0}, {95, 95, 47}}, 1);
+    CHECK(test::thrownBy([&] { synthesize(fibres, options); }).code == int(ErrorCode::InvalidOption));
+    options.rotationMap.reset();
+    options.direction.reset();
+    CHECK(test::thrownBy([&] { synthesize(fibres, options); }).code == int(ErrorCode::InvalidOption));
+}
+
 TEST_CASE("synthesize: a guide places parts of the exemplar", "[pipeline][property]") {
     const LevelSet balls = made("balls"), grid = made("grid");
     SynthOptions both = sized(2, 1, 1);
@@ -466,48 +527,6 @@ TEST_CASE("synthesize: controls give the same bits for any number of threads, an
     };
     CHECK(run(1, nullptr) == run(2, nullptr));
     std::atomic<bool> cancel{true};
-TEST_CASE("synthesize: the exemplar rotated along a field of directions", "[pipeline][property]") {
-    // Fibres run along x; around the middle they run in circles.
-    const LevelSet fibres = made("fibres", 48);
-    SynthOptions options = sized(2, 2, 1);
-    options.direction = DirectionSource{};
-    options.direction->kind = DirectionSource::Kind::Around;
-    test::Said said;
-    const SynthResult result = synthesize(fibres, options, said.ctx);
-    CHECK(said.noted("is taken to run along axis:x"));
-    const openvdb::FloatGrid& grid = *result.model.grid;
-    double along = 0, across = 0;
-    for (auto it = grid.cbeginValueOn(); it; ++it) {
-        const openvdb::Coord c = it.getCoord();
-        const double x = c.x() - 47.5, y = c.y() - 47.5, r = std::sqrt(x * x + y * y);
-        if (r < 16 || r > 44 || c.z() < 4 || c.z() > 43 || std::abs(*it) > 1) continue;
-        const auto& tree = grid.tree();
-        const double dx =
-            double(tree.getValue(c.offsetBy(1, 0, 0)) - tree.getValue(c.offsetBy(-1, 0, 0))) / 2;
-        const double dy =
-            double(tree.getValue(c.offsetBy(0, 1, 0)) - tree.getValue(c.offsetBy(0, -1, 0))) / 2;
-        along += std::abs(dy * x - dx * y) / r;
-        across += std::abs(dx * x + dy * y) / r;
-    }
-    CHECK(along < 0.5 * across);
-    checkRepeats(result, {&fibres});
-    // The exemplar's own direction: along y nothing rotates along y.
-    options.direction->kind = options.exemplarDirection.emplace().kind = DirectionSource::Kind::Axis;
-    options.direction->axis = options.exemplarDirection->axis = {0, 1, 0};
-    const SynthResult plain = synthesize(fibres, options);
-    REQUIRE(plain.map.variants.size() == 1);
-    CHECK(plain.map.variants[0].plain());
-    // It cannot vary, nor be alone, nor be given beside a map.
-    options.exemplarDirection->kind = DirectionSource::Kind::Radial;
-    CHECK(test::thrownBy([&] { synthesize(fibres, options); }).code == int(ErrorCode::InvalidOption));
-    options.exemplarDirection->kind = DirectionSource::Kind::Axis;
-    options.rotationMap = boxGrid({{0, 0, 0}, {95, 95, 47}}, 1);
-    CHECK(test::thrownBy([&] { synthesize(fibres, options); }).code == int(ErrorCode::InvalidOption));
-    options.rotationMap.reset();
-    options.direction.reset();
-    CHECK(test::thrownBy([&] { synthesize(fibres, options); }).code == int(ErrorCode::InvalidOption));
-}
-
     CHECK(test::thrownBy([&] { run(2, &cancel); }).code == int(ErrorCode::Cancelled));
 }
 

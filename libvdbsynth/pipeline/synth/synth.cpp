@@ -41,8 +41,7 @@ Controls readControls(const SynthOptions& options, const LevelSets& exemplars, c
     Controls controls;
     const openvdb::FloatGrid& like = *exemplars.front()->grid;
     // Controls lie where the result does.
-    const openvdb::FloatGrid::ConstPtr there =
-        like.copyReplacingTransform(movedTransform(like, plan.map.moved));
+    const FloatGridConstPtr there = movedGrid(like, plan.map.moved);
     ControlFrame frame{plan.map.targetBox, plan.map.targetDomain, {}, there.get()};
     for (std::size_t axis = 0; axis < 3; ++axis) frame.tiles[axis] = plan.block.border[axis] == Border::Tile;
     if (options.exemplarMap || rotatesOrScales(options))

@@ -232,10 +232,10 @@ Vec3d movedTo(const Vec3d& origin, const IndexBox& domain, const openvdb::FloatG
     return origin - fromVec(like.transform().indexToWorld(corner));
 }
 
-openvdb::math::Transform::Ptr movedTransform(const openvdb::FloatGrid& like, const Vec3d& by) {
-    const openvdb::math::Transform::Ptr transform = like.transform().copy();
+FloatGridConstPtr movedGrid(const openvdb::FloatGrid& grid, const Vec3d& by) {
+    const openvdb::math::Transform::Ptr transform = grid.transform().copy();
     transform->postTranslate(toVec(by));
-    return transform;
+    return grid.copyReplacingTransform(transform);
 }
 
 double requireMemoryFor(const RunContext& ctx, const SourceMap& map, const LevelSets& exemplars) {
@@ -309,7 +309,8 @@ LevelSet finishSynthesis(const SourceMap& map, BrickField voted, const ExemplarF
     close.draft = map.draft && map.halfWidth == kHalfWidth;
     const BrickField band = closedBand(field, corner, close, ctx);
     model.grid = levelSetFrom(band, map.halfWidth, like, "the result", ctx);
-    if (dot(map.moved, map.moved) > 0) model.grid->setTransform(movedTransform(like, map.moved));
+    if (dot(map.moved, map.moved) > 0)
+        model.grid->setTransform(movedGrid(like, map.moved)->transform().copy());
     model.domain = map.targetDomain;
     model.domainRecorded = true;
     stampLevelSet(model);

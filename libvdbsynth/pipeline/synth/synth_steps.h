@@ -4,8 +4,6 @@
 #include "libvdbsynth/vdb/attribute_transfer.h"
 #include "libvdbsynth/vdb/control_grids.h"
 
-#include <openvdb/math/Transform.h>
-
 #include <memory>
 #include <vector>
 
@@ -46,8 +44,8 @@ double requireMemoryFor(const RunContext& ctx, const SourceMap& map, const Level
 /// How far a domain is moved so that its minimum corner comes to `origin`. [world]
 Vec3d movedTo(const Vec3d& origin, const IndexBox& domain, const openvdb::FloatGrid& like);
 
-/// A grid's transform, moved. [world]
-openvdb::math::Transform::Ptr movedTransform(const openvdb::FloatGrid& like, const Vec3d& by);
+/// A grid at another place, which shares the other's tree. [world]
+FloatGridConstPtr movedGrid(const openvdb::FloatGrid& grid, const Vec3d& by);
 
 SearchedFields gatherExemplars(const SourceMap& map, const LevelSets& exemplars, const RunContext& ctx);
 

@@ -25,6 +25,7 @@ set(VDBSYNTH_PUBLIC_HEADERS
   measure/measures.h
   pipeline/analogy/analogy.h
   pipeline/compare/compare.h
+  pipeline/direction/direction.h
   pipeline/fill/fill.h
   pipeline/make/make.h
   pipeline/match/match.h

@@ -5,7 +5,10 @@
 #include "libvdbsynth/geometry/triangle.h"
 #include "libvdbsynth/math/nearest_frame.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <string>
 
 namespace vdbsynth {
@@ -66,17 +69,50 @@ Axes turnOf(const VertexSum& vertex) {
     return volumeOf(mean) > kLeast ? nearestFrame(mean) : vertex.largest;
 }
 
+// Triangles in one order, each from its least corner.
+std::vector<Triangle> ordered(const Mesh& mesh) {
+    std::vector<Triangle> triangles = triangulated(mesh);
+    for (Triangle& t : triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    std::sort(triangles.begin(), triangles.end());
+    return triangles;
+}
+
+// The directed edges of triangles without those that are run through both ways: the outlines of their parts.
+std::map<std::array<std::uint32_t, 2>, int> outlineOf(const std::vector<Triangle>& triangles) {
+    std::map<std::array<std::uint32_t, 2>, int> edges;
+    for (const Triangle& t : triangles)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+            edges[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+        }
+    for (auto edge = edges.begin(); edge != edges.end();)
+        edge = edge->second == 0 ? edges.erase(edge) : ++edge;
+    return edges;
+}
+
+// A polygon that is concave in one pose only is split there, or along another diagonal.
+bool differBySplits(const Mesh& rest, const Mesh& posed) {
+    const std::vector<Triangle> a = ordered(rest), b = ordered(posed);
+    if (a.size() != b.size()) return false;
+    std::vector<Triangle> onlyRest, onlyPosed;
+    std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(onlyRest));
+    std::set_difference(b.begin(), b.end(), a.begin(), a.end(), std::back_inserter(onlyPosed));
+    // Of closed meshes with nothing in common both outlines are empty.
+    return 2 * onlyRest.size() <= a.size() && outlineOf(onlyRest) == outlineOf(onlyPosed);
+}
+
 void requireSameFaces(const Mesh& rest, const Mesh& posed) {
     if (rest.faceCount() == 0) throw Error(ErrorCode::EmptyInput, "the mesh at rest has no faces");
     const auto counts = [](const Mesh& mesh) {
         return std::to_string(mesh.points.size()) + " vertices and " + countText(mesh.faceCount(), "face");
     };
+    const bool same = rest.triangles == posed.triangles && rest.quads == posed.quads;
+    if (rest.points.size() == posed.points.size() && (same || differBySplits(rest, posed))) return;
     if (rest.points.size() != posed.points.size() || rest.faceCount() != posed.faceCount())
         throw Error(ErrorCode::ShapeMismatch, "the mesh at rest has " + counts(rest) + ", the posed one " +
                                                   counts(posed) + "; both must have the same faces");
-    if (rest.triangles != posed.triangles || rest.quads != posed.quads)
-        throw Error(ErrorCode::ShapeMismatch,
-                    "the mesh at rest and the posed one have as many faces, but not the same ones");
+    throw Error(ErrorCode::ShapeMismatch,
+                "the mesh at rest and the posed one have as many faces, but not the same ones");
 }
 
 }  // namespace

@@ -23,9 +23,11 @@ struct RestPlace {
 /// as the faces do. Where both poses are the same every place is its own.
 class RestMap {
 public:
-    /// @param rest, posed  [world] of the same faces and the same vertices in the same order
+    /// @param rest, posed  [world] of the same faces, in any order, and the same vertices in the same order;
+    /// polygons may be split into triangles otherwise in one pose, as readers split those that are concave
+    /// there
     /// @throw Error ShapeMismatch (other faces or another number of vertices), EmptyInput (no faces)
-    /// @par Cost    O(faces)   @par Repeats yes
+    /// @par Cost    O(faces), O(faces * log faces) where polygons are split otherwise   @par Repeats yes
     RestMap(const Mesh& rest, const Mesh& posed);
 
     /// The posed surface: triangles only, in the order that `face` of `at` counts in.

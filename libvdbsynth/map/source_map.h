@@ -2,6 +2,7 @@
 #include "libvdbsynth/map/element_sources.h"
 #include "libvdbsynth/map/exemplar_variant.h"
 #include "libvdbsynth/map/patch_map.h"
+#include "libvdbsynth/math/vec3.h"
 
 #include <array>
 #include <cstdint>
@@ -82,6 +83,7 @@ struct SourceMap {
     float band = 8;        ///< [voxels], limit of the distances
     float halfWidth = 3;   ///< [voxels] of the result
     double voxelSize = 1;  ///< [world] of the exemplars
+    Vec3d moved;           ///< [world] of a synthesis: from where the first exemplar's voxels put the result
     MappedTarget target;   ///< of fills and analogies
     MappedAnalogy analogy;
     MappedHole hole;

@@ -9,7 +9,8 @@ namespace vdbsynth {
 /// A model without and with a texture, as training input [bhat2004, Figures 2, 7, 8, 9].
 struct AnalogyPairKind {
     std::string name, summary,
-        direction;   ///< of the texture, in the form that parseDirection (pipeline/analogy/analogy.h) reads
+        direction;   ///< of the texture, in the form that parseDirection (pipeline/direction/direction.h)
+                     ///< reads
     double feature;  ///< default distance from one piece of texture to the next [voxels]
 };
 

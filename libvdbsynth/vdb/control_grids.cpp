@@ -8,7 +8,7 @@
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/grid_reader.h"
 #include "libvdbsynth/vdb/level_set.h"
-#include "libvdbsynth/vdb/read/field_kind.h"
+#include "libvdbsynth/vdb/mask.h"
 #include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 
@@ -126,10 +126,9 @@ constexpr float kFade = 3;  // [voxels] of the frame, inside a solid mask
 // A mask that is a solid, as a level set with distances on the lattice of its frame; null: it holds numbers.
 FloatGridConstPtr solidMask(const openvdb::GridBase& grid, const ControlFrame& frame, const std::string& what,
                             const RunContext& ctx) {
-    const FloatGridPtr field = asFloat(openvdb::ConstPtrCast<openvdb::GridBase>(grid.copyGrid()));
-    if (!field || kindOf(*field, ctx) == FieldKind::Density) return nullptr;
-    const LevelSet solid = modelFromGrids(what, {field}, {}, ctx);
-    return resampleLevelSet(*solid.grid, *frame.like, kFade + 2, what, ctx);
+    const FloatGridConstPtr solid = solidOfMask(grid, what, ctx);
+    if (!solid) return nullptr;
+    return resampleLevelSet(*solid, *frame.like, kFade + 2, what, ctx);
 }
 
 }  // namespace
@@ -152,6 +151,31 @@ BrickField sampledWeight(const openvdb::GridBase& grid, const ControlFrame& fram
     });
 }
 
+namespace {
+
+// The middle voxel of every cell, within the box.
+std::vector<Index3> variantVoxels(const IndexBox& box) {
+    const Index3 cells = variantCells(box);
+    std::vector<Index3> voxels(latticeCount(cells));
+    for (std::size_t i = 0; i < voxels.size(); ++i) {
+        Index3 voxel = latticeVoxel(i, cells);
+        for (int axis = 0; axis < 3; ++axis)
+            voxel[axis] =
+                std::min(box.min[axis] + voxel[axis] * kVariantCell + kVariantCell / 2, box.max[axis]);
+        voxels[i] = voxel;
+    }
+    return voxels;
+}
+
+}  // namespace
+
+std::vector<Vec3d> variantPlaces(const ControlFrame& frame) {
+    const Place worldOf = placesOf(frame);
+    std::vector<Vec3d> places;
+    for (const Index3& voxel : variantVoxels(frame.box)) places.push_back(worldOf(voxel));
+    return places;
+}
+
 std::vector<WantedVariant> wantedVariants(const openvdb::GridBase* exemplarMap,
                                           const openvdb::GridBase* rotation, const openvdb::GridBase* scale,
                                           int exemplars, const ControlFrame& frame, const RunContext& ctx) {
@@ -166,18 +190,12 @@ std::vector<WantedVariant> wantedVariants(const openvdb::GridBase* exemplarMap,
         return made;
     };
     readers();  // grids of a wrong kind are refused here, not in a worker
-    const Place worldOf = placesOf(frame);
-    const Index3 cells = variantCells(frame.box);
-    std::vector<WantedVariant> wanted(latticeCount(cells));
+    const std::vector<Index3> voxels = variantVoxels(frame.box);
+    const std::vector<Vec3d> places = variantPlaces(frame);
+    std::vector<WantedVariant> wanted(voxels.size());
     parallelFor(ctx, wanted.size(), 4096, [&](std::size_t begin, std::size_t end) {
         const Readers own = readers();
-        for (std::size_t i = begin; i < end; ++i) {
-            Index3 voxel = latticeVoxel(i, cells);
-            for (int axis = 0; axis < 3; ++axis)
-                voxel[axis] = std::min(frame.box.min[axis] + voxel[axis] * kVariantCell + kVariantCell / 2,
-                                       frame.box.max[axis]);
-            wanted[i] = own.at(worldOf(voxel), voxel);
-        }
+        for (std::size_t i = begin; i < end; ++i) wanted[i] = own.at(places[i], voxels[i]);
     });
     double most = 0;
     for (const WantedVariant& want : wanted) most = std::max(most, length(want.rotation));

@@ -37,7 +37,10 @@ BrickField sampledWeight(const openvdb::GridBase& grid, const ControlFrame& fram
 /// A level set's grid as a control, for callers without OpenVDB's headers.
 GridConstPtr asControl(const FloatGridConstPtr& grid);
 
-/// What control grids ask for at every place of a frame (variantCells), x slowest. A level set among the
+/// The positions at which controls of variants are read (variantCells of the frame's box), x slowest. [world]
+std::vector<Vec3d> variantPlaces(const ControlFrame& frame);
+
+/// What control grids ask for at every place of a frame (variantPlaces). A level set among the
 /// numbers of exemplars means the second inside and the first outside.
 /// @param exemplarMap  numbers of exemplars, 0 to exemplars - 1, or null: 0 everywhere
 /// @param rotation  rotation vectors, or angles about z [radians], or null

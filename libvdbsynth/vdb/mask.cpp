@@ -5,6 +5,9 @@
 #include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/grid_kinds.h"
+#include "libvdbsynth/vdb/grid_reader.h"
+#include "libvdbsynth/vdb/read/field_kind.h"
+#include "libvdbsynth/vdb/vdb_file.h"
 #include "libvdbsynth/vdb/wall.h"
 
 #include <openvdb/openvdb.h>
@@ -13,6 +16,8 @@
 
 namespace vdbsynth {
 namespace {
+
+constexpr double kFar = 1 << 28;  // [voxels] beyond this, sizes of boxes exceed int
 
 openvdb::BoolGrid::Ptr emptyMask(const openvdb::math::Transform::Ptr& transform) {
     auto mask = openvdb::BoolGrid::create(false);
@@ -52,6 +57,74 @@ BrickField gatherMask(const openvdb::GridBase& grid, const IndexBox& box, const 
         return field;
     throw Error(ErrorCode::BadData, "mask \"" + grid.getName() + "\": a grid of " + grid.valueType() +
                                         " cannot be a mask; bool, mask, int32 or float can");
+}
+
+FloatGridConstPtr solidOfMask(const openvdb::GridBase& mask, const std::string& what, const RunContext& ctx) {
+    const FloatGridPtr field = asFloat(openvdb::ConstPtrCast<openvdb::GridBase>(mask.copyGrid()));
+    if (!field || kindOf(*field, ctx) == FieldKind::Density) return nullptr;
+    return modelFromGrids(what, {field}, {}, ctx).grid;
+}
+
+namespace {
+
+// What may be active of a mask, in another grid's voxels.
+IndexBox boxIn(const openvdb::FloatGrid& like, const openvdb::GridBase& mask) {
+    const IndexBox own = activeBox(mask);
+    openvdb::BBoxd box;
+    for (int corner = 0; corner < 8; ++corner) {
+        openvdb::Vec3d p;
+        for (int axis = 0; axis < 3; ++axis)
+            p[axis] = corner >> axis & 1 ? own.max[axis] + 0.5 : own.min[axis] - 0.5;
+        box.expand(like.transform().worldToIndex(mask.transform().indexToWorld(p)));
+    }
+    IndexBox in;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(std::abs(box.min()[axis]) < kFar && std::abs(box.max()[axis]) < kFar))
+            throw Error(ErrorCode::Memory, "mask \"" + mask.getName() +
+                                               "\": lies too far away for voxels of " +
+                                               roundedText(like.voxelSize()[0], 6) + "; use larger voxels");
+        in.min[axis] = int(std::floor(box.min()[axis]));
+        in.max[axis] = int(std::ceil(box.max()[axis]));
+    }
+    return in;
+}
+
+}  // namespace
+
+GridConstPtr maskOn(const GridConstPtr& mask, const openvdb::FloatGrid& like, const std::string& what,
+                    const RunContext& ctx) {
+    const FloatGridConstPtr solid = solidOfMask(*mask, what, ctx);
+    if (!solid && mask->transform() == like.transform()) return mask;
+    const openvdb::GridBase& read = solid ? *solid : *mask;
+    scalarReader(read, GridSampling::Linear,
+                 what);  // a grid of a wrong kind is refused here, not in a worker
+    const IndexBox box = boxIn(like, read);
+    requireMemory(ctx, double(box.volume()) / 8, what + ", a mask of " + boxText(box),
+                  "use larger voxels or a smaller mask");
+    const auto reader = [&] {
+        return scalarReader(read, solid ? GridSampling::Linear : GridSampling::Nearest, what);
+    };
+    const BrickField field =
+        BrickField::generate(IndexBox::fromSize(box.size()), ctx, [&](const IndexBox& brick, float* samples) {
+            const GridReader at = reader();
+            forEachVoxel(brick, [&](const Index3& p) {
+                const Index3 voxel = p + box.min;
+                const GridReading found =
+                    at(fromVec(like.transform().indexToWorld(openvdb::Vec3d(voxel.x, voxel.y, voxel.z))));
+                *samples++ = (solid ? found.value.z < 0 : found.active) ? 1.f : 0.f;
+            });
+        });
+    const auto made = emptyMask(like.transform().copy());
+    auto accessor = made->getAccessor();
+    forEachVoxel(field.box(), [&](const Index3& p) {
+        if (field.inside(p) > 0) accessor.setValueOn(toCoord(p + box.min), true);
+    });
+    if (made->activeVoxelCount() == 0)
+        throw Error(ErrorCode::EmptyInput,
+                    what + ": holds no voxel of the model; it is thinner than voxels of " +
+                        roundedText(like.voxelSize()[0], 6) + ", or empty");
+    made->pruneGrid();
+    return made;
 }
 
 IndexBox activeBox(const openvdb::GridBase& grid) {

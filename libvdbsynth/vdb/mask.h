@@ -17,6 +17,20 @@ BrickField gatherMask(const openvdb::GridBase& grid, const IndexBox& box, const 
 /// @throw Error ShapeMismatch unless the mask has the transform of its model
 void requireMaskFor(const openvdb::GridBase& mask, const openvdb::FloatGrid& like);
 
+/// The solid that a mask is, as a level set: a level set, or distances of no class. Null: it holds numbers or
+/// truths. @param what  the option, for messages   @throw Error as modelFromGrids (vdb_file.h)
+FloatGridConstPtr solidOfMask(const openvdb::GridBase& mask, const std::string& what,
+                              const RunContext& ctx = {});
+
+/// A mask as a grid that is active where it holds, in its model's voxels: a solid is active where the centre
+/// of a voxel lies inside it, whatever its own voxels and band; any other grid where its voxel nearest to the
+/// centre is active. The same grid if it has these voxels and is no solid.
+/// @throw Error as solidOfMask; BadData (a kind of grid that cannot be a mask), EmptyInput (it holds
+/// nowhere), Memory   @par Cost O(voxels of the mask's box)   @par Repeats same bits for any number of
+/// threads
+GridConstPtr maskOn(const GridConstPtr& mask, const openvdb::FloatGrid& like, const std::string& what,
+                    const RunContext& ctx = {});
+
 /// Box of a grid's active voxels. @throw Error EmptyInput (none)
 IndexBox activeBox(const openvdb::GridBase& grid);
 

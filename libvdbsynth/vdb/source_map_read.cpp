@@ -156,6 +156,10 @@ public:
         mMap.band = float(mEntries.real("band", 1.5, 1000));
         mMap.halfWidth = float(mEntries.real("half_width", 1.5, 100));
         mMap.voxelSize = mEntries.real("voxel_size", 1e-30, 1e30);
+        if (mEntries.has("moved")) {
+            const std::vector<double> moved = mEntries.reals("moved", mEntries.text("moved"), 3);
+            mMap.moved = {moved[0], moved[1], moved[2]};
+        }
         if (mMap.method != MapMethod::Synthesis) readTarget();
         if (mMap.method == MapMethod::Analogy) {
             readAnalogyEntries();

@@ -189,6 +189,9 @@ void describe(const SourceMap& map, openvdb::GridBase& grid) {
     putText(grid, "band", exactText(map.band));
     putText(grid, "half_width", exactText(map.halfWidth));
     putText(grid, "voxel_size", exactText(map.voxelSize));
+    if (dot(map.moved, map.moved) > 0)
+        putText(grid, "moved",
+                exactText(map.moved.x) + "," + exactText(map.moved.y) + "," + exactText(map.moved.z));
     if (map.exemplars.size() > 1) putText(grid, "exemplars", std::to_string(map.exemplars.size()));
     for (std::size_t e = 0; e < map.exemplars.size(); ++e) {
         putText(grid, numbered("exemplar_box", e), boxText(map.exemplars[e].box));

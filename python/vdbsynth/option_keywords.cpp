@@ -234,6 +234,8 @@ void describe(Keywords& keywords, SynthOptions& options) {
     keywords.add("exemplarBox", options.exemplarBox, "[index] overrides the (first) exemplar's domain");
     keywords.add("border", options.border,
                  "for all axes or for each; None: cut where a domain is recorded or given, else object");
+    keywords.add("origin", options.origin,
+                 "[world] where the minimum corner of the result's domain goes; None: the exemplar's");
     keywords.add("block", options.block,
                  "[voxels] side of the matched blocks, 4 to 256; 0: from the exemplar, at most 16");
     keywords.add("levels", options.levels, "passes, coarse to fine, 1 to 8; 0: as many as useful");
@@ -250,6 +252,11 @@ void describe(Keywords& keywords, SynthOptions& options) {
                  "over the result: which exemplar to use where; needs several");
     keywords.add("rotationMap", options.rotationMap,
                  "over the result: rotation vectors, or angles about z [radians]");
+    keywords.add(
+        "direction", options.direction,
+        "over the result: the exemplar is rotated along it, instead of rotationMap; None: not rotated");
+    keywords.add("exemplarDirection", options.exemplarDirection,
+                 "of the exemplars, an axis or a vector; None: as recorded, else axis:x");
     keywords.add("scaleMap", options.scaleMap, "over the result: scale of the copied geometry, 0.25 to 4");
     keywords.add("guide", options.guide,
                  "over the result: a scalar that controls where parts of the exemplars go");
@@ -275,6 +282,10 @@ void describe(Keywords& keywords, FillOptions& options) {
 void describe(Keywords& keywords, RepeatOptions& options) {
     keywords.add("carried", options.carried, "values of transferred attributes");
     keywords.add("halfWidth", options.halfWidth, "[voxels] of the result, 1.5 to 100; 0: the map's");
+    keywords.add(
+        "origin", options.origin,
+        "[world] of a map of a synthesis: where the minimum corner of the result's domain goes; None: "
+        "as in the map's run");
 }
 
 void describe(Keywords& keywords, MatchOptions& options) {

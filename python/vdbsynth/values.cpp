@@ -165,9 +165,9 @@ DirectionSource directionFrom(const std::string& name, py::handle value) {
     if (py::isinstance<py::str>(value)) {
         const std::string text = py::cast<std::string>(value);
         if (!parseDirection(text, source))
-            throw Error(
-                ErrorCode::InvalidOption,
-                "`" + name + "` " + text + ": must be axis:x, axis:-z, around:y, radial or curvature");
+            throw Error(ErrorCode::InvalidOption,
+                        "`" + name + "` " + text +
+                            ": must be axis:x, axis:-z, a vector x,y,z, around:y, radial or curvature");
         return source;
     }
     const bool grid = py::isinstance<GridObject>(value) || fromPyopenvdb(value);

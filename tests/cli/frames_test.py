@@ -39,6 +39,21 @@ def capsule():
             "".join("3 %d %d %d\n" % f for f in faces))
 
 
+def box_of_quads(side, moved=None):
+    """A cube of quads of side 8; `moved` corners by where they are on the lattice."""
+    numbers, faces = {}, []
+    for axis in range(3):
+        for end in (0, side):
+            for i in range(side):
+                for j in range(side):
+                    ring = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
+                    corners = [tuple([end, *p][(k - axis) % 3] for k in range(3)) for p in (ring if end else ring[::-1])]
+                    faces.append([numbers.setdefault(c, len(numbers)) for c in corners])
+    places = [[8 * x for x in (moved or {}).get(corner, corner)] for corner in numbers]
+    return (f"OFF\n{len(places)} {len(faces)} 0\n" + "".join("%g %g %g\n" % tuple(p) for p in places) +
+            "".join("4 %d %d %d %d\n" % tuple(f) for f in faces))
+
+
 class Frames(CliTest):
     def setUp(self):
         super().setUp()
@@ -100,11 +115,36 @@ class Poses(CliTest):
         self.ok(*[w.replace("#", "2") if isinstance(w, str) else w for w in self.words], "-o", "one.vdb", "--write-directions", "--threads", 3)
         self.assertEqual(self.read("p.2.vdb"), self.read("one.vdb"))
 
+    def test_quads_that_become_concave(self):
+        """They are read as two triangles; the faces are still those of the pose at rest."""
+        self.write("r.off", box_of_quads(4))
+        self.write("q.off", box_of_quads(4, {(2, 2, 4): (2.7, 2.7, 4)}))
+        said = self.ok("analogy", "a.vdb", "a2.vdb", "q.off", "--rest", "r.off", "-o", "p.vdb", "--resolution", 48, "--direction", "axis:z", "--draft").stderr
+        self.assertNotIn("warning", said)
+        self.ok("analogy", "a.vdb", "a2.vdb", "r.off", "-o", "plain.vdb", "--resolution", 48, "--direction", "axis:z", "--draft")
+        solid = [json.loads(self.ok("info", name, "--json").stdout)["model"]["solid_voxels"] for name in ("plain.vdb", "p.vdb")]
+        self.assertAlmostEqual(solid[1] / solid[0], 1, delta=0.02)
+
     def test_refused(self):
         self.write("other.off", "OFF\n4 4 0\n0 0 0\n9 0 0\n0 9 0\n0 0 9\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n")
         self.fails(1, "both must have the same faces", "analogy", "a.vdb", "a2.vdb", "other.off", "--rest", "rest.off", "-o", "x.vdb")
         self.fails(2, "--source-map", *self.words, "-o", "x.#.vdb", "--frames", "1", "--source-map", "m.#.vdb")
         self.fails(1, "rest", "analogy", "a.vdb", "a2.vdb", "a2.vdb", "--rest", "rest.off", "-o", "x.vdb", "--resolution", 32)
+
+
+class MovingExemplars(CliTest):
+    def test_repeat_keeps_the_arrangement(self):
+        """An exemplar that swells by 0.7 voxels: so does the result, everywhere and on its place."""
+        self.ok("make", "grid", "e.1.vdb", "--resolution", 32)
+        self.ok("convert", "e.1.vdb", "-o", "e.npy", "--values", "distance")
+        self.ok("convert", "e.npy", "-o", "e.2.vdb", "--below", 0.7, "--pixel-size", 1)
+        self.ok("synth", "e.1.vdb", "-o", "s.vdb", "--size", "2x,2x,1x", "--source-map", "map.vdb")
+        self.ok("repeat", "map.vdb", "e.#.vdb", "-o", "r.#.vdb", "--frames", "1-2")
+        others = json.loads(self.ok("compare", "s.vdb", "r.1.vdb", "r.2.vdb", "--json").stdout)["others"]
+        first, second = (other["distances"]["surface"] for other in others)
+        self.assertEqual(first["hausdorff"], 0)
+        self.assertAlmostEqual(second["mean"], 0.7, delta=0.05)
+        self.assertAlmostEqual(second["rms"], 0.7, delta=0.05)
 
 
 def obj_mesh(text):

@@ -61,6 +61,93 @@ class Synth(CliTest):
         self.fails(2, "cannot be combined with --keep", "synth", "--keep", "a.vdb", "--hole", "4,4,4,9,9,9", "-o", "n.vdb", "--exemplar-map", "left.vdb")
         self.fails(2, "needs --method default", "synth", "a.vdb", "-o", "n.vdb", "--size", "2x,2x,1x", "--rotation-map", "a.vdb", "--draft")
 
+    def test_direction(self):
+        self.ok("make", "fibres", "a.vdb", "--resolution", 32)
+        base = ("synth", "a.vdb", "-o", "m.vdb", "--size", "2x,2x,1x")
+        self.assertIn("--exemplar-direction: not given; the exemplar is taken to run along axis:x", self.ok(*base, "--direction", "around:z").stderr)
+        around = self.read("m.vdb")
+        # A grid of the same directions, and strokes.
+        self.write("s.csv", b"x,y,z,dx,dy,dz\n0,0,16,1,0,0\n64,64,16,0,1,0\n")
+        self.assertNotIn("not given", self.ok(*base, "--direction", "s.csv", "--exemplar-direction", "1,0,0").stderr)
+        self.assertNotEqual(self.read("m.vdb"), around)
+        self.ok(*base, "--direction", "a.vdb", "--exemplar-direction", "axis:x")
+        self.fails(2, "--direction and --rotation-map: give one", *base, "--direction", "around:z", "--rotation-map", "a.vdb")
+        self.fails(2, "--exemplar-direction: needs --direction", *base, "--exemplar-direction", "axis:x")
+        self.fails(2, "--exemplar-direction not an axis: must be an axis", *base, "--direction", "around:z", "--exemplar-direction", "radial")
+        self.fails(2, "space has not", *base, "--direction", "curvature")
+        self.fails(2, "--direction 0,0,0: must be", *base, "--direction", "0,0,0")
+        self.fails(2, "--direction: needs --method default", *base, "--direction", "around:z", "--draft")
+        self.fails(2, "--direction: an object border", *base, "--direction", "around:z", "--border", "object")
+        self.fails(2, "cannot be combined with --keep", "synth", "--keep", "a.vdb", "--hole", "4,4,4,9,9,9", "-o", "n.vdb", "--direction", "around:z")
+
+    def test_boxes_in_world_units(self):
+        self.ok("make", "balls", "a.vdb", "--resolution", 40, "--voxel-size", 0.5)
+        self.ok("crop", "a.vdb", "-o", "c.vdb", "--box", "4,4,4,23,23,23")
+        self.ok("crop", "a.vdb", "-o", "w.vdb", "--box", "2w,2w,2w,12w,12w,12w")
+        self.assertEqual(self.model("w.vdb")["domain"], "4,4,4,23,23,23")
+        self.assertEqual(self.model("w.vdb")["solid_voxels"], self.model("c.vdb")["solid_voxels"])
+        self.ok("crop", "a.vdb", "-o", "m.vdb", "--box", "2w,4,4,12w,23,23")
+        self.assertEqual(self.model("m.vdb")["domain"], "4,4,4,23,23,23")
+        # Half the voxels, the same box.
+        self.ok("crop", "a.vdb", "-o", "h.vdb", "--box", "2w,2w,2w,12w,12w,12w", "--voxel-size", 0.25)
+        self.assertEqual(self.model("h.vdb")["domain"], "8,8,8,47,47,47")
+        self.ok("synth", "a.vdb", "-o", "s.vdb", "--exemplar-box", "2w,2w,2w,12w,12w,12w", "--size", "15w,1x,1x")
+        self.assertEqual(self.model("s.vdb")["domain"], "4,4,4,33,23,23")
+        self.ok("mask", "box", "-o", "k.vdb", "--box", "0w,0w,0w,1w,2w,3w", "--voxel-size", 0.5)
+        grid = json.loads(self.ok("info", "k.vdb", "--json").stdout)["grids"][0]
+        self.assertEqual(grid["active_voxels"], 2 * 4 * 6)
+        self.ok("synth", "--keep", "a.vdb", "--hole", "8,8,8,23,23,23", "-o", "x.vdb")
+        self.ok("synth", "--keep", "a.vdb", "--hole", "4w,4w,4w,12w,12w,12w", "-o", "y.vdb")
+        self.assertEqual(self.model("x.vdb")["solid_voxels"], self.model("y.vdb")["solid_voxels"])
+        self.fails(2, "--box 2m,2w,2w,12w,12w,12w: must be six numbers", "crop", "a.vdb", "-o", "n.vdb", "--box", "2m,2w,2w,12w,12w,12w")
+        self.fails(2, "with a w (world)", "synth", "a.vdb", "-o", "n.vdb", "--exemplar-box", "2x,2w,2w,12w,12w,12w", "--size", "2x,1x,1x")
+        self.fails(2, "--box 2.1w,2w,2w,2.2w,12w,12w: holds no voxel", "crop", "a.vdb", "-o", "n.vdb", "--box", "2.1w,2w,2w,2.2w,12w,12w")
+
+    def world_corner(self, name):
+        """Of the domain: half a voxel outside its first voxel, from a mesh's box in the world."""
+        self.ok("convert", name, "-o", "corner.ply")
+        return json.loads(self.ok("info", "corner.ply", "--json").stdout)["bounds_min"]
+
+    def test_origin(self):
+        # A grid whose bars reach every face of its domain.
+        self.ok("make", "foam", "a.vdb", "--resolution", 32, "--voxel-size", 0.5)
+        self.ok("synth", "a.vdb", "-o", "p.vdb", "--size", "2x,1x,1x")
+        self.ok("synth", "a.vdb", "-o", "m.vdb", "--size", "2x,1x,1x", "--origin", "10w,-2,3.25", "--source-map")
+        plain, moved = self.world_corner("p.vdb"), self.world_corner("m.vdb")
+        for axis, (at, by) in enumerate(zip(moved, (10, -2, 3.25))):
+            self.assertAlmostEqual(at - plain[axis], by + 0.25, places=4)
+        self.ok("repeat", "m.vdb", "a.vdb", "-o", "again.vdb")
+        self.assertEqual(json.loads(self.ok("compare", "m.vdb", "again.vdb", "--json").stdout)["others"][0]["distances"]["surface"]["hausdorff"], 0)
+        self.ok("repeat", "m.vdb", "a.vdb", "-o", "r.vdb", "--origin", "0,0,0")
+        self.assertAlmostEqual(self.world_corner("r.vdb")[0] - plain[0], 0.25, places=4)
+        self.fails(2, "--origin 1m,0,0: must be three numbers", "synth", "a.vdb", "-o", "n.vdb", "--size", "2x,1x,1x", "--origin", "1m,0,0")
+        self.fails(2, "cannot be combined with --keep", "synth", "--keep", "a.vdb", "--hole", "4,4,4,9,9,9", "-o", "n.vdb", "--origin", "0,0,0")
+        self.ok("synth", "--keep", "a.vdb", "--hole", "8,8,8,23,23,23", "-o", "k.vdb", "--source-map")
+        self.fails(2, "--origin: only results of a synthesis", "repeat", "k.vdb", "a.vdb", "-o", "n.vdb", "--origin", "0,0,0")
+
+    def test_masks_of_other_voxels_and_kinds(self):
+        self.ok("make", "balls", "a.vdb", "--resolution", 48)
+        base = ("synth", "a.vdb", "--size", "2x,1x,1x", "-o")
+        self.ok("mask", "box", "-o", "k.vdb", "--box", "0,0,0,31,47,47")
+        self.ok("mask", "box", "-o", "h.vdb", "--box", "0,0,0,63,95,95", "--voxel-size", 0.5)
+        self.ok(*base, "o.vdb", "--exemplar-mask", "k.vdb")
+        self.ok(*base, "s.vdb", "--exemplar-mask", "h.vdb")
+        self.assertEqual(self.model("o.vdb")["solid_voxels"], self.model("s.vdb")["solid_voxels"])
+        # A box as a mesh, as a level set of other bands and voxels, as fog.
+        ends = [(x, y, z) for x in (-0.4, 31.4) for y in (-0.4, 47.4) for z in (-0.4, 47.4)]
+        faces = ("0 1 3 2", "4 6 7 5", "0 4 5 1", "2 3 7 6", "0 2 6 4", "1 5 7 3")
+        self.write("b.off", "OFF\n8 6 0\n" + "".join("%g %g %g\n" % e for e in ends) + "".join(f"4 {f}\n" for f in faces))
+        self.ok("convert", "b.off", "-o", "b2.vdb", "--voxel-size", 1.37, "--half-width", 2)
+        self.ok("convert", "b.off", "-o", "b8.vdb", "--voxel-size", 0.5, "--half-width", 8)
+        for mask in ("b.off", "b2.vdb", "b8.vdb"):
+            self.ok(*base, "s.vdb", "--exemplar-mask", mask)
+            self.assertEqual(self.model("s.vdb")["domain"], self.model("o.vdb")["domain"], mask)
+            # Voxels of 1.37 round the box's edges.
+            self.assertAlmostEqual(self.model("s.vdb")["solid_voxels"] / self.model("o.vdb")["solid_voxels"], 1, delta=0.01 if mask == "b2.vdb" else 0)
+        found = json.loads(self.ok("match", "a.vdb", "a.vdb", "--block", 8, "--at", "28,8,8", "--mask", "b.off").stdout)
+        self.assertEqual(found["known_samples"], 4 * 8 * 8)
+        self.assertEqual(found["matches"][0]["position"], [28, 8, 8])
+
     def test_colours_come_along(self):
         self.ok("make", "sponge", "e.vdb", "--resolution", 32)
         self.ok("convert", "e.vdb", "-o", "e.obj")

@@ -97,6 +97,19 @@ class Texture(CliTest):
         colours = {(v["red"], v["green"], v["blue"]) for v in ply_vertices(self.read("k.ply"))}
         self.assertGreater(len(colours), 1)
 
+    def test_texture_size_is_the_scale_in_world_units(self):
+        base = ("texture", "b.vdb", "checks.png", "-o")
+        self.ok(*base, "s.ply", "--report", "s.json", "--texture-size", 12)
+        with open(self.path("s.json")) as file:
+            texel = json.load(file)["counts"]["texel"]
+        self.assertAlmostEqual(32 * texel, 12, places=5)
+        # Points of half the distance: the same width of a pixel.
+        self.ok("texture", "b.off", "checks.png", "-o", "f.ply", "--as", "levelset", "--voxel-size", 0.5, "--report", "f.json", "--texture-size", 12)
+        with open(self.path("f.json")) as file:
+            self.assertAlmostEqual(json.load(file)["counts"]["texel"], texel, places=6)
+        self.fails(2, "--scale and --texture-size: give one of them", *base, "x.ply", "--texture-size", 12, "--scale", 2)
+        self.fails(2, "a scale of", *base, "x.ply", "--texture-size", 1e6)
+
     def test_kinds_of_target(self):
         self.ok("texture", "b.vdb", "checks.png", "-o", "l.vdb", "-o", "l.ply", "-o", "l.obj", "-o", "l.off", "-o", "l.gltf", "-o", "l.3mf")
         self.ok("texture", "b.off", "checks.png", "-o", "p.ply", "--as", "points")

@@ -210,8 +210,7 @@ TEST_CASE("SynthOptions: every field out of its range is refused", "[pipeline][e
                              o.guide = balls.grid;
                              return o;
                          }()));
-    cases.push_back(with("voxel size", &O::exemplarMask, GridConstPtr(boxMask({{0, 0, 0}, {9, 9, 9}}, 2)),
-                         call, {}, ErrorCode::ShapeMismatch));
+    cases.push_back(with("`origin`", &O::origin, std::optional<Vec3d>(Vec3d{0, 1e31, 0}), call));
     cases.push_back(with("no active voxels", &O::exemplarMask, GridConstPtr(openvdb::BoolGrid::create(false)),
                          call, {}, ErrorCode::EmptyInput));
     cases.push_back({"at least one exemplar", ErrorCode::InvalidOption,
@@ -240,8 +239,8 @@ TEST_CASE("MatchOptions: every field out of its range is refused", "[pipeline][e
     cases.push_back(with("`at`", &O::at, Index3{std::numeric_limits<int>::max(), 0, 0}, call));
     cases.push_back(with("`at`", &O::at, Index3{1000, 0, 0}, call, {}, ErrorCode::Unusable));
     cases.push_back(with("`block` 40", &O::block, 40, call, {}, ErrorCode::Unusable));
-    cases.push_back(
-        with("mask", &O::mask, GridConstPtr(boxMask(model.domain, 2)), call, {}, ErrorCode::ShapeMismatch));
+    cases.push_back(with("no active voxels", &O::mask, GridConstPtr(openvdb::BoolGrid::create(false)), call,
+                         {}, ErrorCode::EmptyInput));
     refuses(cases);
 }
 

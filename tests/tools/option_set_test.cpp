@@ -82,7 +82,7 @@ TEST_CASE("Arguments: a reader gives what was given, else the default, else noth
     CHECK(given.sizes("size")[2].value == 1.5);
     CHECK(given.labels("labels") == std::vector<std::pair<double, double>>{{1, 1}, {4, 5}});
     CHECK(given.wide("seed") == 7);
-    CHECK(given.box("exemplar-box").max.z == 3);
+    CHECK(given.box("exemplar-box")[5].value == 3);
     CHECK(parseArguments("render", {}).pixels("size") == std::array<int, 2>{800, 600});
     CHECK(parseArguments("render", {"--view", "1,-1.6,0.9"}).triple("view") ==
           std::array<double, 3>{1, -1.6, 0.9});

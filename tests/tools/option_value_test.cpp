@@ -38,6 +38,10 @@ TEST_CASE("normalValue: one form however it was typed", "[tools]") {
     CHECK(normal("synth", "border", "tile") == "tile,tile,tile");
     CHECK(normal("synth", "border", "cut,object,tile") == "cut,object,tile");
     CHECK(normal("crop", "box", "0,0,0,7,8,9") == "0,0,0,7,8,9");
+    CHECK(normal("crop", "box", "0.50w,0,0,1.5w,8,9.0") == "0.5w,0,0,1.5w,8,9");
+    CHECK(normal("synth", "hole", "0w,0w,0w,1.50w,1w,1w") == "0w,0w,0w,1.5w,1w,1w");
+    CHECK(normal("synth", "origin", "1w,2.50w,-3") == "1,2.5,-3");
+    CHECK(normal("synth", "direction", "1,0.50,0") == "1,0.5,0");
     CHECK(normal("make", "size", "64,64,32.0") == "64,64,32");
     CHECK(normal("match", "at", "-5,0,7") == "-5,0,7");
     CHECK(normal("render", "view", "1.0,-1.60,.9") == "1,-1.6,0.9");
@@ -108,8 +112,8 @@ TEST_CASE("normalValue: what is out of range or of another kind is refused in on
         CHECK(test::contains(refusal("synth", "size", bad), std::string("--size ") + bad));
     for (const char* bad : {"tiles", "cut,cut", "cut,cut,cut,cut", "cut,,cut", ""})
         CHECK(test::contains(refusal("synth", "border", bad), "cut, object or tile"));
-    for (const char* bad :
-         {"1,2,3", "0,0,0,1,1,-1", "0,0,0,1,1,99999999999", "-2147483648,0,0,1,1,1", "a,0,0,1,1,1"})
+    for (const char* bad : {"1,2,3", "0,0,0,1,1,-1", "0m,0,0,1,1,1", "0x,0,0,1x,1,1", "1w,0,0,1w,1,1",
+                            "0.5,0,0,1,1,1", "0,0,0,1,1,99999999999", "-2147483648,0,0,1,1,1", "a,0,0,1,1,1"})
         CHECK(test::contains(refusal("crop", "box", bad), "--box"));
     for (const char* bad : {"5-1", "", "1,,2", "a", "1-2-3"})
         CHECK(test::contains(refusal("convert", "labels", bad), "--labels"));
@@ -133,9 +137,10 @@ TEST_CASE("normalValue: what is out of range or of another kind is refused in on
 }
 
 TEST_CASE("normalValue: files are known by their extensions, before any is read", "[tools][error]") {
-    CHECK(test::contains(refusal("match", "mask", "m.png"),
-                         "--mask m.png: must be a .vdb file, or FILE.vdb:GRID"));
-    CHECK(test::contains(refusal("synth", "hole", "m.doc"), "a model, a box i,j,k,I,J,K, or auto"));
+    CHECK(test::contains(refusal("synth", "guide", "m.png"),
+                         "--guide m.png: must be a .vdb file, or FILE.vdb:GRID"));
+    CHECK(test::contains(refusal("synth", "hole", "m.doc"),
+                         "a model, a box i,j,k,I,J,K (voxels, or world with a w), or auto"));
     CHECK(test::contains(refusal("analogy", "direction", "axis:w"), "axis:x|y|z"));
     CHECK(test::contains(refusal("compare", "map", "m.obj"), "--map m.obj: must be a .vdb file"));
     CHECK(test::contains(refusal("synth", "keep", "m.doc"), "m.doc: unknown extension"));

@@ -49,8 +49,8 @@ def inexact(root):
 
 
 # A method is one header with its options and result, and what those are made of: of texturing ten, as its samples, targets and
-# coordinates are types of their own; of relief five, as extraction gives its base, radii and statistics as well.
-MOST_PUBLIC = 54
+# coordinates are types of their own; of relief five, as extraction gives its base, radii and statistics as well. Directions are an option of five methods.
+MOST_PUBLIC = 55
 MOST_HEADERS = 13  # in a folder
 
 # Headers without a test of their own: plain data, or tested with what uses them, which is named.

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Makes pictures of docs/pictures again with a built program, from models that `make` makes.
-# Usage: make_pictures.sh [PROGRAM [NAME...]]; NAME is synth, synthesis, analogies, shallow, patches, relief, texturing, render or fog,
-# all by default. Not made here: controls.png and analogy_directions.png, whose maps and sponge were not kept.
+# Usage: make_pictures.sh [PROGRAM [NAME...]]; NAME is synth, synthesis, analogies, shallow, patches, relief, texturing, render, fog, direction or
+# poses, all by default. Not made here: controls.png and analogy_directions.png, whose maps and sponge were not kept.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 program=$(realpath "${1:-$root/build/release/tools/vdb_synth/vdb_synth}")
 shift || true
 names=("$@")
-[ ${#names[@]} -gt 0 ] || names=(synth synthesis analogies shallow patches relief texturing render fog)
+[ ${#names[@]} -gt 0 ] || names=(synth synthesis analogies shallow patches relief texturing render fog direction poses)
 pictures=$root/docs/pictures
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -118,6 +118,35 @@ draw_render() {
 draw_fog() {
   /usr/bin/python3 "$root/tools/dev/make_cloud.py" cloud.vdb
   run render cloud.vdb -o "$pictures/render-fog.png" --size 480x360
+}
+
+# A lattice and fibres along circles.
+draw_direction() {
+  local kind all=()
+  mkdir -p d && cd d
+  for kind in grid fibres; do
+    run make "$kind" "$kind.vdb" --resolution 64 --seed 1
+    run synth "$kind.vdb" -o "$kind-rings.vdb" --size 3x,3x,1x --direction around:z
+    all+=("$kind.vdb" "$kind-rings.vdb")
+  done
+  run render "${all[@]}" -o "$pictures/synth-direction.png" --size 480x380 --columns 2 --samples 8 --captions none --view 0.3,-0.6,1
+  cd ..
+}
+
+# One texture, made at rest and carried to twists.
+draw_poses() {
+  local degrees frame=0
+  mkdir -p p && cd p
+  run make three-tori body.vdb --resolution 100
+  run convert body.vdb -o body.obj
+  for degrees in 0 1.5 3 30 60 90; do
+    frame=$((frame + 1))
+    "$root/tools/dev/twist_mesh.py" body.obj "body.$frame.obj" "$degrees"
+  done
+  run make thorns A.vdb A2.vdb
+  run analogy A.vdb A2.vdb "body.#.obj" --rest body.obj -o "pose.#.vdb" --frames 1-6 --resolution 150 --direction around:z
+  run render pose.[1-6].vdb -o "$pictures/poses.png" --size 420x300 --columns 3 --samples 8 --captions none
+  cd ..
 }
 
 for name in "${names[@]}"; do

@@ -2,6 +2,7 @@
 #include "tools/vdb_synth/command.h"
 #include "tools/vdb_synth/direction_option.h"
 #include "tools/vdb_synth/map_place.h"
+#include "tools/vdb_synth/mask_option.h"
 #include "tools/vdb_synth/options.h"
 #include "tools/vdb_synth/texture_size.h"
 
@@ -12,7 +13,6 @@
 #include "libvdbsynth/pipeline/analogy/filter_analogy.h"
 #include "libvdbsynth/pipeline/convert/outputs.h"
 #include "libvdbsynth/pipeline/pose/pose.h"
-#include "libvdbsynth/vdb/control_grids.h"
 
 #include <nlohmann/json.hpp>
 
@@ -20,6 +20,8 @@
 
 namespace vdbsynth::cli {
 namespace {
+
+constexpr double kMaskHalfWidth = 6;  // [voxels] of a mesh as mask: it fades in over three inside
 
 AnalogyOptions parseOptions(const Arguments& arguments) {
     AnalogyOptions options;
@@ -93,19 +95,6 @@ Models loadModels(Run& run) {
     options.keepSource = posed;
     models.target = run.load(posed ? run.arguments.text("rest") : inputs.back(), options);
     return models;
-}
-
-void loadMask(Run& run, double voxelSize, AnalogyOptions& options) {
-    if (!run.arguments.has("mask")) return;
-    const std::string text = run.arguments.text("mask");
-    if (namesGrid(text)) {
-        options.mask = run.loadGrid("mask");
-        return;
-    }
-    ModelOptions model;
-    model.voxelSize = voxelSize;
-    model.halfWidth = 6;
-    options.mask = asControl(run.load(text, model).grid);
 }
 
 void report(Run& run, const AnalogyResult& result) {
@@ -204,7 +193,8 @@ Made makeResult(Run& run, AnalogyOptions options) {
         options.scale = scaleOfSize(run.arguments, longestSide(models.pairs.front()),
                                     voxelSizeOf(*models.target.grid), "--exemplar-resolution");
     keepNamedAttributes(run.arguments, models.pairs);
-    loadMask(run, voxelSizeOf(*models.target.grid), options);
+    if (run.arguments.has("mask"))
+        options.mask = maskOf(run, "mask", voxelSizeOf(*models.target.grid), kMaskHalfWidth);
     options.direction = directionOf(run, "direction");
     options.exemplarDirection = directionOf(run, "exemplar-direction");
     std::vector<AnalogyModelPair> pairs;

@@ -1,4 +1,5 @@
 #include "tools/vdb_synth/command.h"
+#include "tools/vdb_synth/world_box.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/pipeline/convert/outputs.h"
@@ -14,14 +15,15 @@ void crop(Run& run) {
     const std::vector<std::string> paths = run.outputPaths();
     if (!run.arguments.has("box"))
         throw Error(ErrorCode::InvalidOption,
-                    "--box: missing; give i,j,k,I,J,K in index space, both corners inclusive");
-    const IndexBox box = run.arguments.box("box");
+                    "--box: missing; give i,j,k,I,J,K in index space, both corners inclusive, or lengths "
+                    "such as 1.5w (world)");
     requireModelPath(run.arguments.inputs[0]);
     ModelOptions options = run.modelOptions();
     options.carry = true;
-    const LevelSet result =
-        withHalfWidth(cropModel(run.load(run.arguments.inputs[0], options), box, run.context),
-                      options.halfWidth, run.context);
+    const LevelSet model = run.load(run.arguments.inputs[0], options);
+    const IndexBox box =
+        voxelsOf(run.arguments.box("box"), transformOf(*model.grid), "--box " + run.arguments.text("box"));
+    const LevelSet result = withHalfWidth(cropModel(model, box, run.context), options.halfWidth, run.context);
     ModelOutputOptions outputs;
     run.describeOutputs(outputs);
     writeModel(result, paths, outputs, run.outputs(), run.context);

@@ -1,4 +1,5 @@
 #include "tools/vdb_synth/command.h"
+#include "tools/vdb_synth/world_box.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
@@ -55,7 +56,10 @@ void mask(Run& run) {
     if (kind == "box") {
         if (!run.arguments.has("box"))
             throw Error(ErrorCode::InvalidOption, "mask box: give --box i,j,k,I,J,K");
-        const IndexBox box = run.arguments.box("box");
+        Affine transform = kIdentity;
+        for (std::size_t axis = 0; axis < 3; ++axis) transform[5 * axis] = maskVoxelSize(run.arguments);
+        const IndexBox box =
+            voxelsOf(run.arguments.box("box"), transform, "--box " + run.arguments.text("box"));
         const Vec3d s{double(box.size().x), double(box.size().y), double(box.size().z)};
         // Leaf nodes along the surface, tiles of 128^3 inside.
         requireMemory(run.context,

@@ -1,5 +1,6 @@
 #include "tools/vdb_synth/command.h"
 #include "tools/vdb_synth/index_option.h"
+#include "tools/vdb_synth/mask_option.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
@@ -47,7 +48,7 @@ void match(Run& run) {
         queryOptions.resolution = 0;
     }
     const LevelSet query = run.load(run.arguments.inputs[1], queryOptions);
-    if (run.arguments.has("mask")) options.mask = run.loadGrid("mask");
+    if (run.arguments.has("mask")) options.mask = maskOf(run, "mask", voxelSizeOf(*query.grid));
     const MatchResult result = matchModel(exemplar, query, options, run.context);
     nlohmann::json matches = nlohmann::json::array();
     for (const BlockMatch& found : result.matches)

@@ -132,6 +132,10 @@ void repeat(Run& run) {
     RepeatOptions options;
     options.carried = attributeValues(run.arguments);
     if (run.arguments.has("half-width")) options.halfWidth = float(run.modelOptions().halfWidth);
+    if (run.arguments.has("origin")) {
+        const std::array<double, 3> origin = run.arguments.triple("origin");
+        options.origin = Vec3d{origin[0], origin[1], origin[2]};
+    }
     const VdbContents contents = readVdb(mapPath, run.context);
     run.noteInput(mapPath);
     if (const auto patches = patchMapFrom(mapPath, contents.grids)) return repeatPatchMap(run, *patches);

@@ -1,7 +1,10 @@
 #include "tools/vdb_synth/carry_options.h"
 #include "tools/vdb_synth/command.h"
+#include "tools/vdb_synth/direction_option.h"
 #include "tools/vdb_synth/index_option.h"
 #include "tools/vdb_synth/map_place.h"
+#include "tools/vdb_synth/mask_option.h"
+#include "tools/vdb_synth/world_box.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
@@ -67,7 +70,10 @@ SynthOptions parseOptions(const Arguments& arguments) {
     SynthOptions options;
     readSize(arguments, options);
     readBorder(arguments, options);
-    if (arguments.has("exemplar-box")) options.exemplarBox = arguments.box("exemplar-box");
+    if (arguments.has("origin")) {
+        const std::array<double, 3> origin = arguments.triple("origin");
+        options.origin = Vec3d{origin[0], origin[1], origin[2]};
+    }
     options.block = arguments.whole("block");
     options.levels = arguments.whole("levels");
     options.drift = arguments.whole("drift");
@@ -84,9 +90,10 @@ SynthOptions parseOptions(const Arguments& arguments) {
 
 LevelSet holeOf(Run& run, const LevelSet& partial, const ModelOptions& like) {
     const std::string text = run.arguments.text("hole");
-    IndexBox box;
+    BoxValue box;
     if (text == "auto") return holesAtOpenEdges(partial, run.context);
-    if (readBox(text, box)) return boxHole(partial, box, run.context);
+    if (readBox(text, box))
+        return boxHole(partial, voxelsOf(box, transformOf(*partial.grid), "--hole " + text), run.context);
     ModelOptions options = like;
     options.grid.clear();
     return run.load(text, options);
@@ -96,10 +103,27 @@ LevelSet holeOf(Run& run, const LevelSet& partial, const ModelOptions& like) {
 void fill(Run& run) {
     const Arguments& arguments = run.arguments;
     run.requireInputs(0, 1);
-    for (const char* option :
-         {"size", "border", "exemplar-box", "exemplar-mask", "drift", "draft", "method", "carry",
-          "carry-blend", "exemplar-map", "guide", "exemplar-guide", "guide-weight", "longest-run",
-          "rotation-map", "scale-map", "half-width", "index-cache"})
+    for (const char* option : {"size",
+                               "origin",
+                               "border",
+                               "exemplar-box",
+                               "exemplar-mask",
+                               "drift",
+                               "draft",
+                               "method",
+                               "carry",
+                               "carry-blend",
+                               "exemplar-map",
+                               "guide",
+                               "exemplar-guide",
+                               "guide-weight",
+                               "longest-run",
+                               "rotation-map",
+                               "scale-map",
+                               "direction",
+                               "exemplar-direction",
+                               "half-width",
+                               "index-cache"})
         if (arguments.has(option))
             throw Error(ErrorCode::InvalidOption,
                         std::string("--") + option + ": cannot be combined with --keep, which fills holes");
@@ -146,6 +170,12 @@ void fill(Run& run) {
 void requireControls(const Arguments& arguments) {
     if (arguments.has("exemplar-map") && arguments.inputs.size() < 2)
         throw Error(ErrorCode::InvalidOption, "--exemplar-map: chooses between exemplars; give at least two");
+    if (arguments.has("direction") && arguments.has("rotation-map"))
+        throw Error(ErrorCode::InvalidOption,
+                    "--direction and --rotation-map: give one of them; both say how the exemplar is rotated");
+    if (arguments.has("exemplar-direction") && !arguments.has("direction"))
+        throw Error(ErrorCode::InvalidOption,
+                    "--exemplar-direction: needs --direction, along which the exemplar is rotated");
     if (arguments.has("guide") != arguments.has("exemplar-guide"))
         throw Error(ErrorCode::InvalidOption,
                     "--guide and --exemplar-guide: give both, the same scalar over result and exemplar");
@@ -185,6 +215,9 @@ void loadControls(Run& run, double voxelSize, SynthOptions& options) {
         options.exemplarMap = asControl(run.load(map, model).grid);
     }
     if (arguments.has("rotation-map")) options.rotationMap = run.loadGrid("rotation-map");
+    if (arguments.has("direction")) options.direction = directionOf(run, "direction");
+    if (arguments.has("exemplar-direction"))
+        options.exemplarDirection = directionOf(run, "exemplar-direction");
     if (arguments.has("scale-map")) options.scaleMap = run.loadGrid("scale-map");
     if (!arguments.has("guide")) return;
     options.guide = run.loadGrid("guide");
@@ -210,8 +243,13 @@ void synth(Run& run) {
     modelOptions.carry = true;
     std::vector<LevelSet> exemplars = loadExemplars(run, modelOptions);
     keepNamedAttributes(run.arguments, exemplars);
-    withWorldSizes(run.arguments, voxelSizeOf(*exemplars.front().grid), options);
-    if (run.arguments.has("exemplar-mask")) options.exemplarMask = run.loadGrid("exemplar-mask");
+    const auto& first = *exemplars.front().grid;
+    withWorldSizes(run.arguments, voxelSizeOf(first), options);
+    if (run.arguments.has("exemplar-box"))
+        options.exemplarBox = voxelsOf(run.arguments.box("exemplar-box"), transformOf(first),
+                                       "--exemplar-box " + run.arguments.text("exemplar-box"));
+    if (run.arguments.has("exemplar-mask"))
+        options.exemplarMask = maskOf(run, "exemplar-mask", voxelSizeOf(first));
     loadControls(run, voxelSizeOf(*exemplars.front().grid), options);
     const SynthResult result = synthesize(pointersTo(exemplars), options, run.context);
     writeWithMap(run, result.model, result.map, place, paths, outputs);

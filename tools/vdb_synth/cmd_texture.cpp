@@ -2,6 +2,7 @@
 #include "tools/vdb_synth/direction_option.h"
 #include "tools/vdb_synth/texture_files.h"
 #include "tools/vdb_synth/texture_region_option.h"
+#include "tools/vdb_synth/texture_size.h"
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
@@ -42,6 +43,8 @@ void refuseOtherMethods(const Arguments& arguments) {
             std::find(of.methods.begin(), of.methods.end(), method) == of.methods.end())
             throw Error(ErrorCode::InvalidOption,
                         std::string("--") + of.option + ": has no effect with --method " + method);
+    if (arguments.has("scale") && arguments.has("texture-size"))
+        throw Error(ErrorCode::InvalidOption, "--scale and --texture-size: give one of them");
     if (arguments.has("displace") != arguments.has("amplitude"))
         throw Error(ErrorCode::InvalidOption,
                     "--displace and --amplitude: give both, the map and the height of its white (world)");
@@ -144,6 +147,11 @@ void texture(Run& run) {
     TextureShape shape = loadTarget(arguments.inputs[0], kindOf(arguments), outputs.model, run.context);
     run.noteInput(arguments.inputs[0]);
     requireOutputs(shape, paths, outputs);
+    if (arguments.has("texture-size")) {
+        const SampleImage& first = samples.front().image;
+        options.scale = scaleOfImage(arguments, double(std::max(first.width, first.height)),
+                                     siteSpacing(shape, run.context));
+    }
     noteUnusedVoxels(run, shape, paths);
     noteUnblended(run, files, paths);
     if (arguments.has("direction")) options.direction = directionOf(run, "direction");

@@ -1,5 +1,5 @@
 #pragma once
-#include "libvdbsynth/pipeline/analogy/analogy.h"
+#include "libvdbsynth/pipeline/direction/direction.h"
 #include "tools/vdb_synth/command.h"
 
 #include <string>

@@ -151,7 +151,8 @@ std::string allowedText(const Option& option) {
         case Kind::Bytes:
             return "at least 1M, for example 4G";
         case Kind::Triple:
-            return "three numbers with commas, for example 1,2,3";
+            return std::string("three numbers with commas, for example 1,2,3") +
+                   (option.unit == Unit::World ? " or 1w,2w,3w" : "");
         case Kind::WholeTriple:
             return "three whole numbers " +
                    std::string(rangeText(option).empty() ? "" : "from " + rangeText(option) + " ") +
@@ -160,7 +161,9 @@ std::string allowedText(const Option& option) {
         case Kind::Range:
             return "a smaller and a larger number with a comma, for example -1,0.5";
         case Kind::Box:
-            return "six whole numbers i,j,k,I,J,K, every minimum at most its maximum";
+            return "six numbers i,j,k,I,J,K, each whole (voxels) or with a w (world), every minimum at most "
+                   "its "
+                   "maximum";
         case Kind::SheetSizes:
             return "two sizes with a comma, each a length above 0 (world) or a multiple such as 4x, for "
                    "example "
@@ -179,7 +182,8 @@ std::string allowedText(const Option& option) {
         case Kind::Process:
             return "such as \"make balls\" or \"make balls --feature 12\", with a feature from 4 to 256";
         case Kind::Direction:
-            return "axis:x|y|z or axis:-x, around:x|y|z, radial, curvature, a grid FILE.vdb[:GRID], or "
+            return "axis:x|y|z or axis:-x, a vector x,y,z that is not 0, around:x|y|z, radial, curvature, a "
+                   "grid FILE.vdb[:GRID], or "
                    "strokes in a .csv, .json or .ply file";
         case Kind::NamedImage:
             return "NAME=FILE with an image, for example roughness=rough.png; a name of letters, digits and "
@@ -187,7 +191,7 @@ std::string allowedText(const Option& option) {
         case Kind::Hole:
             return option.unit == Unit::World
                        ? "a model, or a box x,y,z,X,Y,Z, every minimum below its maximum"
-                       : "a model, a box i,j,k,I,J,K, or auto";
+                       : "a model, a box i,j,k,I,J,K (voxels, or world with a w), or auto";
         case Kind::Region:
             return "a model, FILE.vdb:GRID for a grid, or auto";
         case Kind::File:

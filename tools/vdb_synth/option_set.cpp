@@ -146,7 +146,7 @@ std::uint64_t Arguments::wide(const std::string& name) const {
 
 std::array<double, 3> Arguments::triple(const std::string& name) const {
     std::array<double, 3> parts{};
-    readTriple(text(name), parts);
+    readWorldTriple(text(name), parts);  // of other units the `w` was refused
     return parts;
 }
 
@@ -168,8 +168,8 @@ std::pair<double, double> Arguments::range(const std::string& name) const {
     return ends;
 }
 
-IndexBox Arguments::box(const std::string& name) const {
-    IndexBox box;
+BoxValue Arguments::box(const std::string& name) const {
+    BoxValue box;
     readBox(text(name), box);
     return box;
 }

@@ -45,7 +45,7 @@ public:
     std::array<double, 3> triple(const std::string& name) const;
     Index3 wholeTriple(const std::string& name) const;
     std::pair<double, double> range(const std::string& name) const;
-    IndexBox box(const std::string& name) const;
+    BoxValue box(const std::string& name) const;
     std::array<SizeValue, 2> sheetSizes(const std::string& name) const;
     std::array<SizeValue, 3> sizes(const std::string& name) const;
     std::array<int, 2> pixels(const std::string& name) const;

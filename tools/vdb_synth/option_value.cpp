@@ -3,9 +3,9 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/path.h"
-#include "libvdbsynth/pipeline/analogy/analogy.h"
 #include "libvdbsynth/pipeline/convert/model.h"
 #include "libvdbsynth/pipeline/convert/outputs.h"
+#include "libvdbsynth/pipeline/direction/direction.h"
 
 #include <algorithm>
 #include <charconv>
@@ -57,10 +57,11 @@ std::string normalWhole(const Option& option, const std::string& given) {
     return std::to_string(value);
 }
 
-std::string normalBox(const IndexBox& box) {
+std::string normalBox(const BoxValue& box) {
     std::vector<std::string> parts;
-    for (const Index3& corner : {box.min, box.max})
-        for (int axis = 0; axis < 3; ++axis) parts.push_back(std::to_string(corner[axis]));
+    for (const SizeValue& end : box)
+        parts.push_back(end.world ? exactText(end.value) + "w"
+                                  : std::to_string(static_cast<long long>(end.value)));
     return joined(parts);
 }
 
@@ -114,7 +115,8 @@ std::string normalNumbers(const Option& option, const std::string& given) {
             parts.push_back(exactText(length));
         }
     } else if (option.kind == Kind::Triple) {
-        if (!readTriple(given, triple)) refuseValue(option, given);
+        const bool world = option.unit == Unit::World;
+        if (world ? !readWorldTriple(given, triple) : !readTriple(given, triple)) refuseValue(option, given);
         for (double value : triple) parts.push_back(exactText(value));
     } else {
         if (!readWholeTriple(given, whole)) refuseValue(option, given);
@@ -206,7 +208,7 @@ std::string normalOutput(const Option& option, const std::string& given) {
 
 std::string normalPath(const Option& option, const std::string& given) {
     DirectionSource direction;
-    IndexBox box;
+    BoxValue box;
     std::array<double, 6> reals;
     std::pair<std::string, std::string> image;
     switch (option.kind) {
@@ -214,7 +216,11 @@ std::string normalPath(const Option& option, const std::string& given) {
             if (!readNamedImage(given, image)) refuseValue(option, given);
             return image.first + "=" + fileNameOf(image.second);
         case Kind::Direction:
-            if (parseDirection(given, direction)) return given;
+            if (parseDirection(given, direction))
+                return given.find(',') == std::string::npos
+                           ? given
+                           : joined({exactText(direction.axis.x), exactText(direction.axis.y),
+                                     exactText(direction.axis.z)});
             if (!namesGrid(given) && !isStrokeFile(given)) refuseValue(option, given);
             return fileOnly(given);
         case Kind::Hole:
@@ -247,7 +253,7 @@ void refuseValue(const Option& option, const std::string& given) {
 }
 
 std::string normalValue(const Option& option, const std::string& given) {
-    IndexBox box;
+    BoxValue box;
     std::vector<int> frames;
     if (readsPath(option)) return normalPath(option, given);
     switch (option.kind) {
@@ -290,7 +296,7 @@ std::string normalValue(const Option& option, const std::string& given) {
 
 std::string pathIn(const Option& option, const std::string& value) {
     DirectionSource direction;
-    IndexBox box;
+    BoxValue box;
     std::array<double, 6> reals;
     if (option.kind == Kind::Output) return value;
     if (!readsPath(option)) return "";

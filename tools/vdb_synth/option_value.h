@@ -19,6 +19,10 @@ struct SizeValue {
     bool world = false;  ///< "2.5w": a length in world units
 };
 
+/// A Kind::Box: i,j,k,I,J,K. Whole numbers are voxels, both corners inclusive; lengths in world units (1.5w)
+/// hold the voxels whose centres lie from the lower one up to, but not on, the upper one.
+using BoxValue = std::array<SizeValue, 6>;
+
 /// A Kind::Slice: an axis and a position along it.
 struct SliceValue {
     int axis = 2;
@@ -40,8 +44,10 @@ bool readLengths(const std::string& text, std::vector<double>& lengths);
 bool readTriple(const std::string& text, std::array<double, 3>& values);
 bool readWholeTriple(const std::string& text, Index3& values);
 bool readRange(const std::string& text, double& low, double& high);
-bool readBox(const std::string& text, IndexBox& box);
-/// A Kind::Hole of Unit::World: finite, every minimum below its maximum.
+bool readBox(const std::string& text, BoxValue& box);
+/// Three numbers (world), each with or without a `w`.
+bool readWorldTriple(const std::string& text, std::array<double, 3>& values);
+/// A Kind::Hole of Unit::World: finite, every minimum below its maximum, with or without a `w`.
 bool readWorldBox(const std::string& text, std::array<double, 6>& values);
 bool readSheetSizes(const std::string& text, std::array<SizeValue, 2>& sizes);
 bool readSizes(const std::string& text, std::array<SizeValue, 3>& sizes);

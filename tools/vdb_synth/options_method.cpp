@@ -8,8 +8,23 @@ namespace {
 std::vector<Option> resultTable() {
     return {
         option(Kind::Sizes, "size", "X,Y,Z")
-            .says("size of the result: voxels, or multiples of the exemplar's domain such as 2x,2x,1x")
+            .says("size of the result: voxels, multiples of the exemplar's domain such as 2x,2x,1x, or "
+                  "lengths such "
+                  "as 2.5w (world)")
             .takenBy({"synth"}),
+        option(Kind::Triple, "origin", "X,Y,Z")
+            .measuredIn(Unit::World)
+            .says("where the result's minimum corner goes, half a voxel outside its first voxel's centre")
+            .otherwiseIs("where that of the exemplar's domain is")
+            .takenBy({"synth", "repeat"})
+            .butFor("repeat",
+                    [](Option& o) {
+                        o.says(
+                             "of a map of synth: where the result's minimum corner goes, half a voxel "
+                             "outside its "
+                             "first voxel's centre")
+                            .otherwiseIs("as far from the exemplar's as in the map's run");
+                    }),
         option(Kind::WholeTriple, "size", "X,Y,Z")
             .from(8, 4096)
             .measuredIn(Unit::Voxels)
@@ -33,11 +48,17 @@ std::vector<Option> resultTable() {
             .otherwiseIs("cut where a domain is recorded or a clip left the model cut open, else object")
             .takenBy({"synth"}),
         option(Kind::Box, "box", "BOX")
-            .measuredIn(Unit::Voxels)
-            .says("i,j,k,I,J,K in index space, both corners inclusive")
+            .says("i,j,k,I,J,K: voxels in index space, both corners inclusive, or lengths such as 1.5w "
+                  "(world): "
+                  "voxels with their centres from the lower up to, not on, the upper")
             .takenBy({"crop", "mask"})
             .butFor("mask",
-                    [](Option& o) { o.says("for box: i,j,k,I,J,K in index space, both corners inclusive"); }),
+                    [](Option& o) {
+                        o.says(
+                            "for box: i,j,k,I,J,K: voxels in index space, both corners inclusive, or lengths "
+                            "such as 1.5w (world): voxels with their centres from the lower up to, not on, "
+                            "the upper");
+                    }),
         option(Kind::Triple, "center", "X,Y,Z")
             .measuredIn(Unit::World)
             .says("for ball: its centre")
@@ -98,11 +119,14 @@ std::vector<Option> synthTable() {
 std::vector<Option> controlTable() {
     return {
         option(Kind::Box, "exemplar-box", "BOX")
-            .measuredIn(Unit::Voxels)
-            .says("domain i,j,k,I,J,K in the exemplar's index space, both corners inclusive")
+            .says("domain i,j,k,I,J,K: voxels in the exemplar's index space, both corners inclusive, or "
+                  "lengths "
+                  "such as 1.5w (world): voxels with their centres from the lower up to, not on, the upper")
             .takenBy({"synth"}),
-        grid("exemplar-mask")
-            .says("copy only from where this grid is active; its box is the domain (of the first exemplar)")
+        option(Kind::ModelOrGrid, "exemplar-mask", "FILE")
+            .says("copy only from inside this model, or where this grid of a .vdb is active, in any voxels; "
+                  "its "
+                  "box is the domain (of the first exemplar)")
             .takenBy({"synth"}),
         option(Kind::ModelOrGrid, "exemplar-map", "FILE")
             .says("which exemplar to use where in the result: a .vdb grid of labels (0: the first exemplar), "
@@ -138,7 +162,8 @@ std::vector<Option> controlTable() {
             .takenBy({"synth"}),
         option(Kind::Hole, "hole", "MODEL|BOX|auto")
             .says("what to fill with --keep: the inside of a model, a box i,j,k,I,J,K of the kept model's "
-                  "voxels, or auto: 3 voxels around the surface that closed its open edges")
+                  "voxels (or world, with a w), or auto: 3 voxels around the surface that closed its open "
+                  "edges")
             .takenBy({"synth"}),
     };
 }
@@ -147,17 +172,28 @@ std::vector<Option> analogyTable() {
     return {
         option(Kind::Direction, "direction", "SPEC")
             .in(Group::Controls)
-            .says("direction of the texture over B: axis:x, axis:-z, around:y, radial, curvature, a grid of "
+            .says("direction of the texture over B: axis:x, axis:-z, a vector x,y,z, around:y, radial, "
+                  "curvature, a grid of "
                   "vectors or scalars FILE.vdb[:GRID], or strokes (world): .csv rows x,y,z,dx,dy,dz, .json, "
                   ".ply points with normals")
             .otherwiseIs("curvature")
-            .takenBy({"analogy", "texture", "relief", "patch"})
+            .takenBy({"analogy", "texture", "relief", "patch", "synth"})
+            .butFor("synth",
+                    [](Option& o) {
+                        o.says(
+                             "rotate the copied geometry along these directions, instead of --rotation-map: "
+                             "axis:x, axis:-z, a vector x,y,z, around:y, radial, a grid of vectors or "
+                             "scalars FILE.vdb[:GRID], or strokes (world): .csv rows x,y,z,dx,dy,dz, .json, "
+                             ".ply points with normals")
+                            .otherwiseIs("");
+                    })
             .butFor(
                 "patch",
                 [](Option& o) {
                     o.says(
                          "direction of the exemplar's first axis over MODEL, with --onto: axis:x, axis:-z, "
-                         "around:y, radial, curvature, a grid of vectors or scalars FILE.vdb[:GRID], or "
+                         "a vector x,y,z, around:y, radial, curvature, a grid of vectors or scalars "
+                         "FILE.vdb[:GRID], or "
                          "strokes (world): .csv rows x,y,z,dx,dy,dz, .json, .ply points with normals")
                         .otherwiseIs("a smooth field");
                 })
@@ -165,7 +201,8 @@ std::vector<Option> analogyTable() {
                 "relief",
                 [](Option& o) {
                     o.says(
-                         "direction of the sample's rows over TARGET: axis:x, axis:-z, around:y, radial, "
+                         "direction of the sample's rows over TARGET: axis:x, axis:-z, a vector x,y,z, "
+                         "around:y, radial, "
                          "curvature, a grid of vectors or scalars FILE.vdb[:GRID], or strokes (world): .csv "
                          "rows x,y,z,dx,dy,dz, .json, .ply points with normals")
                         .otherwiseIs("a smooth field");
@@ -173,7 +210,8 @@ std::vector<Option> analogyTable() {
             .butFor("texture",
                     [](Option& o) {
                         o.says(
-                             "direction of the images' rows over the target: axis:x, axis:-z, around:y, "
+                             "direction of the images' rows over the target: axis:x, axis:-z, a vector "
+                             "x,y,z, around:y, "
                              "radial, curvature, a grid of vectors or scalars FILE.vdb[:GRID], or strokes "
                              "(world): .csv "
                              "rows x,y,z,dx,dy,dz, .json, .ply points with normals")
@@ -183,7 +221,12 @@ std::vector<Option> analogyTable() {
             .in(Group::Controls)
             .says("direction of the texture over A, given in the same ways")
             .otherwiseIs("the grid direction that make wrote into A, else curvature")
-            .takenBy({"analogy", "relief"})
+            .takenBy({"analogy", "relief", "synth"})
+            .butFor("synth",
+                    [](Option& o) {
+                        o.says("with --direction: the exemplar's own, an axis or a vector")
+                            .otherwiseIs("the axis that make wrote into the exemplar, else axis:x");
+                    })
             .butFor("relief",
                     [](Option& o) {
                         o.says("direction of the relief over a SAMPLE, given in the same ways")
@@ -220,7 +263,13 @@ std::vector<Option> analogyTable() {
             .says(
                 "length on B that the longest side of A's domain covers, instead of --scale: the same at any "
                 "resolution of B")
-            .takenBy({"analogy", "relief"})
+            .takenBy({"analogy", "relief", "texture"})
+            .butFor("texture",
+                    [](Option& o) {
+                        o.says(
+                            "length on TARGET that the longest side of the first IMAGE covers, instead of "
+                            "--scale: the same however far points are apart");
+                    })
             .butFor("relief",
                     [](Option& o) {
                         o.says(
@@ -290,9 +339,10 @@ std::vector<Option> matchTable() {
             .measuredIn(Unit::Voxels)
             .says("minimum corner of the block in QUERY's index space")
             .takenBy({"match"}),
-        grid("mask")
+        option(Kind::ModelOrGrid, "mask", "FILE")
             .in(Group::Controls)
-            .says("compare only samples where this grid is active, in QUERY's index space")
+            .says("compare only samples of QUERY inside this model, or where this grid of a .vdb is active, "
+                  "in any voxels")
             .takenBy({"match"}),
         whole("count", "K", 1, 100000).says("number of matches").initially("1").takenBy({"match"}),
         real("tolerance", "E", 0, 100)

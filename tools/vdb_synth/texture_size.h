@@ -15,4 +15,9 @@ double longestSide(const LevelSet& model);
 /// @throw Error InvalidOption (with --scale as well; a scale that the command does not allow)
 double scaleOfSize(const Arguments& arguments, double side, double voxelSize, const std::string& finer);
 
+/// The same of `texture`: the scale that lays the longest side of an image, in pixels, over --texture-size.
+/// @param spacing  siteSpacing of the target [world]
+/// @throw Error InvalidOption (as above), Unusable (no two points)
+double scaleOfImage(const Arguments& arguments, double pixels, double spacing);
+
 }  // namespace vdbsynth::cli

@@ -78,11 +78,29 @@ bool readTriple(const std::string& text, std::array<double, 3>& values) {
     return true;
 }
 
+namespace {
+
+// A length or place in world units; its `w` says what is so anyway.
+bool readWorld(std::string part, double& value) {
+    if (part.size() > 1 && part.back() == 'w') part.pop_back();
+    return parseReal(part, value) && std::isfinite(value);
+}
+
+}  // namespace
+
+bool readWorldTriple(const std::string& text, std::array<double, 3>& values) {
+    const std::vector<std::string> parts = splitAtCommas(text);
+    if (parts.size() != 3) return false;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (!readWorld(parts[i], values[i])) return false;
+    return true;
+}
+
 bool readWorldBox(const std::string& text, std::array<double, 6>& values) {
     const std::vector<std::string> parts = splitAtCommas(text);
     if (parts.size() != 6) return false;
     for (std::size_t i = 0; i < 6; ++i)
-        if (!parseReal(parts[i], values[i]) || !std::isfinite(values[i])) return false;
+        if (!readWorld(parts[i], values[i])) return false;
     return values[0] < values[3] && values[1] < values[4] && values[2] < values[5];
 }
 
@@ -102,19 +120,6 @@ bool readRange(const std::string& text, double& low, double& high) {
     return parts.size() == 2 && parseReal(parts[0], low) && parseReal(parts[1], high) && low <= high;
 }
 
-bool readBox(const std::string& text, IndexBox& box) {
-    const std::vector<std::string> parts = splitAtCommas(text);
-    constexpr int kFar = 1 << 28;  // beyond this, sizes of boxes exceed int
-    int ends[6] = {};
-    if (parts.size() != 6) return false;
-    for (std::size_t i = 0; i < 6; ++i)
-        if (!parseWhole(parts[i], ends[i]) || ends[i] < -kFar || ends[i] > kFar) return false;
-    const IndexBox given{{ends[0], ends[1], ends[2]}, {ends[3], ends[4], ends[5]}};
-    if (given.empty()) return false;
-    box = given;
-    return true;
-}
-
 namespace {
 
 bool readSize(std::string part, SizeValue& size) {
@@ -125,6 +130,25 @@ bool readSize(std::string part, SizeValue& size) {
 }
 
 }  // namespace
+
+bool readBox(const std::string& text, BoxValue& box) {
+    const std::vector<std::string> parts = splitAtCommas(text);
+    constexpr int kFar = 1 << 28;  // beyond this, sizes of boxes exceed int
+    if (parts.size() != 6) return false;
+    BoxValue given;
+    for (std::size_t i = 0; i < 6; ++i) {
+        SizeValue& end = given[i];
+        if (!readSize(parts[i], end) || end.multiple) return false;
+        if (!end.world && (end.value != std::floor(end.value) || std::abs(end.value) > kFar)) return false;
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const SizeValue &low = given[axis], &high = given[axis + 3];
+        if (low.world != high.world) continue;  // known with the voxels
+        if (low.value > high.value || (low.world && low.value == high.value)) return false;
+    }
+    box = given;
+    return true;
+}
 
 bool readSheetSizes(const std::string& text, std::array<SizeValue, 2>& sizes) {
     const std::vector<std::string> parts = splitAtCommas(text);

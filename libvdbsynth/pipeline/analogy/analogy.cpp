@@ -203,24 +203,6 @@ AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const Leve
 
 }  // namespace
 
-namespace {
-
-void requireDirection(const DirectionSource& source, const char* field) {
-    using Kind = DirectionSource::Kind;
-    const auto finite = [](const Vec3d& v) { return std::isfinite(dot(v, v)); };
-    requireOption(source.kind != Kind::Grid || source.grid, field, "Grid", "given with a `grid`");
-    const bool axis = source.kind == Kind::Axis || source.kind == Kind::Around;
-    requireOption(!axis || (finite(source.axis) && dot(source.axis, source.axis) > 0), field,
-                  "Axis or Around", "given with an `axis` that is not 0");
-    if (source.kind != Kind::Strokes) return;
-    requireOption(!source.strokes.empty(), field, "Strokes", "given with `strokes`");
-    for (const Stroke& stroke : source.strokes)
-        requireOption(finite(stroke.position) && finite(stroke.direction), field, "Strokes",
-                      "given with `strokes` of finite numbers");
-}
-
-}  // namespace
-
 void validate(const AnalogyOptions& options, const std::vector<AnalogyModelPair>& pairs,
               const LevelSet& target) {
     requireOption(options.scale >= 0.25 && options.scale <= 4, "scale", roundedText(options.scale, 6),

@@ -2,6 +2,7 @@
 #include "libvdbsynth/analogy/analogy_options.h"
 #include "libvdbsynth/base/run_context.h"
 #include "libvdbsynth/map/source_map.h"
+#include "libvdbsynth/pipeline/direction/direction.h"
 #include "libvdbsynth/vdb/level_set.h"
 
 #include <cstdint>
@@ -9,34 +10,6 @@
 #include <vector>
 
 namespace vdbsynth {
-
-/// A direction given at a position. [world]
-struct Stroke {
-    Vec3d position, direction;
-};
-
-/// Which way a texture runs over a surface.
-struct DirectionSource {
-    enum class Kind {
-        Automatic,  ///< along the least curvature (curvature_direction.h)
-        Axis,       ///< along `axis`
-        Around,     ///< around `axis` through the middle of the model
-        Radial,     ///< away from the middle of the model
-        Grid,       ///< the vectors of `grid`, or the gradient of its scalars
-        Strokes     ///< the `strokes`, diffused in between
-    } kind = Kind::Automatic;
-    Vec3d axis{0, 0, 1};  ///< [world]
-    GridConstPtr grid;
-    std::vector<Stroke> strokes;
-};
-
-/// Metadata of a level set with the direction of its texture, in the form that
-/// parseDirection reads; `make` writes it.
-inline constexpr const char* kDirectionKey = "vdbsynth:direction";
-
-/// `axis:x`, `axis:-z`, `around:y`, `radial`, `curvature`.
-/// @return false if the text is none of these
-bool parseDirection(const std::string& text, DirectionSource& source);
 
 /// What happens to parts of a target that are thinner than the texture is deep.
 enum class ThinParts {

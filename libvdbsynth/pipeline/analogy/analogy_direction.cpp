@@ -5,24 +5,15 @@
 #include "libvdbsynth/pipeline/analogy/analogy_steps.h"
 #include "libvdbsynth/surface/curvature_direction.h"
 #include "libvdbsynth/vdb/coord.h"
-#include "libvdbsynth/vdb/grid_reader.h"
 
 #include <openvdb/openvdb.h>
 
 #include <cmath>
-#include <functional>
 
 namespace vdbsynth {
 namespace {
 
 constexpr float kStrokeReach = 1.5f;  // [voxels] around a stroke's position that it applies to
-
-GridReader readerOf(const openvdb::GridBase& grid, const std::string& field) {
-    if (GridReader vectors = vectorReader(grid, GridSampling::Linear)) return vectors;
-    if (GridReader gradient = gradientReader(grid)) return gradient;
-    throw Error(ErrorCode::BadData, "`" + field + "`: grid " + grid.getName() + " holds " + grid.valueType() +
-                                        "; vectors or a float scalar are needed");
-}
 
 // Each stroke applies to the shell around the nearest surface point.
 void addStrokes(const SurfaceShell& shell, const FieldPlace& place, const std::vector<Stroke>& strokes,
@@ -66,12 +57,7 @@ std::vector<Vec3f> givenDirections(const SurfaceShell& shell, const FieldPlace& 
         addStrokes(shell, place, source.strokes, given);
         return given;
     }
-    const Vec3d middle = middleOfPoints(shell, place);
-    std::function<Vec3d(const Vec3d&)> reader = [&](const Vec3d&) { return source.axis; };
-    if (source.kind == Kind::Around) reader = [&](const Vec3d& p) { return cross(source.axis, p - middle); };
-    if (source.kind == Kind::Radial) reader = [&](const Vec3d& p) { return p - middle; };
-    if (source.kind == Kind::Grid)
-        reader = [grid = readerOf(*source.grid, field)](const Vec3d& p) { return grid(p).value; };
+    const auto reader = directionReader(source, middleOfPoints(shell, place), field);
     for (std::size_t i = 0; i < shell.size(); ++i) {
         const Vec3d direction = place.fromWorldDirection(reader(place.toWorld(cast<double>(shell.point[i]))));
         if (std::isfinite(dot(direction, direction))) given[i] = cast<float>(direction);

@@ -11,10 +11,9 @@
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/convert/zero_level.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/redistance.h"
 
 #include <openvdb/openvdb.h>
-#include <openvdb/tools/GridTransformer.h>
-#include <openvdb/tools/Interpolation.h>
 
 #include <algorithm>
 #include <array>
@@ -44,12 +43,11 @@ LevelSet holeFrom(const LevelSet& partial, const IndexBox& inside, const RunCont
 }
 
 // The hole in the partial's own voxels.
-openvdb::FloatGrid::Ptr inVoxelsOf(const openvdb::FloatGrid& partial, const LevelSet& hole) {
-    if (hole.grid->transform() == partial.transform()) return hole.grid;
-    auto moved = openvdb::FloatGrid::create(hole.grid->background());
-    moved->setTransform(partial.transform().copy());
-    openvdb::tools::resampleToMatch<openvdb::tools::BoxSampler>(*hole.grid, *moved);
-    return moved;
+openvdb::FloatGrid::Ptr inVoxelsOf(const openvdb::FloatGrid& partial, const LevelSet& hole,
+                                   const RunContext& ctx) {
+    const bool wide = halfWidthOf(*hole.grid) >= double(kHalfWidth) - 1e-3;
+    if (wide && hole.grid->transform() == partial.transform()) return hole.grid;
+    return resampleLevelSet(*hole.grid, partial, kHalfWidth, "the hole", ctx);
 }
 
 // True if the partial's closure left solid and void in the hole: a shape that is useful as a guess.
@@ -168,7 +166,7 @@ FillResult filledHoles(const LevelSet& partial, const LevelSet& hole, const Leve
                        const FillOptions& options, const RunContext& ctx) {
     SourceMap map;
     map.method = MapMethod::Fill;
-    map.hole = holeOf(*inVoxelsOf(*partial.grid, hole), ctx);
+    map.hole = holeOf(*inVoxelsOf(*partial.grid, hole, ctx), ctx);
     map.hole.fromSelf = exemplar == nullptr;
     // As the map's reader provides it, so that a repetition has the same input.
     const FloatGridPtr holeGrid = holeGridOf(map.hole, *partial.grid, ctx);

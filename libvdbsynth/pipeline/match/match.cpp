@@ -54,7 +54,8 @@ MatchResult matched(const LevelSet& exemplar, const LevelSet& query, const Match
     std::vector<std::uint8_t> known;
     if (options.mask) {
         std::vector<float> mask(count);
-        gatherMask(*options.mask, box, *query.grid, ctx).readBox({0, 0, 0}, side, mask.data());
+        gatherMask(*maskOn(options.mask, *query.grid, "`mask`", ctx), box, *query.grid, ctx)
+            .readBox({0, 0, 0}, side, mask.data());
         for (float value : mask) known.push_back(value > 0 ? 1 : 0);
         blockQuery.known = known.data();
     }
@@ -108,7 +109,7 @@ void validate(const MatchOptions& options, const LevelSet& exemplar, const Level
                     "`at` " + std::to_string(options.at.x) + "," + std::to_string(options.at.y) + "," +
                         std::to_string(options.at.z) + ": the block lies outside the query's domain " +
                         boxText(query.domain));
-    if (options.mask) requireMaskFor(*options.mask, *query.grid);
+    if (options.mask) activeBox(*options.mask);
 }
 
 MatchResult matchModel(const LevelSet& exemplar, const LevelSet& query, const MatchOptions& options,

@@ -15,7 +15,7 @@ struct MatchOptions {
     double tolerance = 0;    ///< BlockSearchOptions::tolerance; 0: exact
     bool check = false;      ///< with a tolerance: also finds the exact matches, to compare
     std::string indexCache;  ///< BlockIndexOptions::cacheFolder; empty: none
-    GridConstPtr mask;       ///< in the query's index space: compares active samples only; null: all
+    GridConstPtr mask;       ///< compares samples where it is active, of a solid inside (maskOn); null: all
 };
 
 struct MatchResult {
@@ -28,8 +28,8 @@ struct MatchResult {
 };
 
 /// @throw Error InvalidOption (a field out of its range, null models), ShapeMismatch (other voxels than the
-/// exemplar's, a mask in other voxels than the query's), Unusable (block larger than the domain, outside the
-/// query's), and what requireModel (vdb/level_set.h) throws
+/// exemplar's), EmptyInput (a mask without active voxels), Unusable (block larger than the domain, outside
+/// the query's), and what requireModel (vdb/level_set.h) throws
 void validate(const MatchOptions& options, const LevelSet& exemplar, const LevelSet& query);
 
 /// The blocks of an exemplar's domain with the smallest differences to one of the query's, exact; distances

@@ -96,12 +96,7 @@ Attribute wholeNumbers(const std::string& name) {
 
 void validate(const PatchOntoOptions& options) {
     validate(options.onto);
-    if (options.direction && options.direction->kind == DirectionSource::Kind::Grid &&
-        !options.direction->grid)
-        throw Error(ErrorCode::InvalidOption, "`direction`: has no grid");
-    if (options.direction && options.direction->kind == DirectionSource::Kind::Strokes &&
-        options.direction->strokes.empty())
-        throw Error(ErrorCode::InvalidOption, "`direction`: has no strokes");
+    if (options.direction) requireDirection(*options.direction, "direction");
 }
 
 LevelSet loadOntoModel(const std::string& path, const PatchSource& source, const PatchOntoOptions& options,

@@ -42,7 +42,9 @@ std::string nameOf(const SourceMap& map, std::size_t e) {
 
 LevelSet repeatSynthesis(const SourceMap& map, int factor, const LevelSets& exemplars,
                          const RepeatOptions& options, const RunContext& ctx) {
-    const SourceMap scaled = finerMap(map, factor);
+    SourceMap scaled = finerMap(map, factor);
+    if (options.origin)
+        scaled.moved = movedTo(*options.origin, scaled.targetDomain, *exemplars.front()->grid);
     requireMemoryFor(ctx, scaled, exemplars);
     const ExemplarFields fields = gatherForVote(scaled, exemplars, ctx);
     float value = 0;
@@ -103,6 +105,9 @@ void validate(const RepeatOptions& options, const SourceMap& given, const LevelS
                     "`carried`: blending needs several sources per voxel, which only maps of a synthesis "
                     "have; this one is of " +
                         std::string(given.method == MapMethod::Fill ? "a filled hole" : "an analogy"));
+    if (options.origin && given.method != MapMethod::Synthesis)
+        throw Error(ErrorCode::InvalidOption,
+                    "`origin`: only results of a synthesis can be moved; this map's lie on its target");
     requireSound(given);
     if (inputs.size() != given.inputs())
         throw Error(ErrorCode::ShapeMismatch,

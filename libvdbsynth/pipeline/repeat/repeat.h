@@ -3,6 +3,7 @@
 #include "libvdbsynth/map/source_map.h"
 #include "libvdbsynth/vdb/level_set.h"
 
+#include <optional>
 #include <vector>
 
 namespace vdbsynth {
@@ -10,11 +11,14 @@ namespace vdbsynth {
 struct RepeatOptions {
     AttributeValues carried = AttributeValues::Copied;
     float halfWidth = 0;  ///< [voxels] of the result, 1.5..100; 0: the map's
+    /// [world] of a map of a synthesis: SynthOptions::origin; none: as far from the first exemplar as in the
+    /// map's run.
+    std::optional<Vec3d> origin;
 };
 
 /// @throw Error InvalidOption (a field out of its range, blended values of a map whose voxels have one source
-/// each), BadData (requireSound), ShapeMismatch (another number of models than the map's), and what
-/// requireModel (vdb/level_set.h) throws
+/// each, an origin for a map of another method), BadData (requireSound), ShapeMismatch (another number of
+/// models than the map's), and what requireModel (vdb/level_set.h) throws
 void validate(const RepeatOptions& options, const SourceMap& map, const std::vector<const LevelSet*>& inputs);
 
 /// Applies a source map to models: gathers, votes and rebuilds, without any search. With the run's own models

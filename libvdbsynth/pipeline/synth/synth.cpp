@@ -40,11 +40,15 @@ Controls readControls(const SynthOptions& options, const LevelSets& exemplars, c
                       const RunContext& ctx) {
     Controls controls;
     const openvdb::FloatGrid& like = *exemplars.front()->grid;
-    ControlFrame frame{plan.map.targetBox, plan.map.targetDomain, {}, &like};
+    // Controls lie where the result does.
+    const FloatGridConstPtr there = movedGrid(like, plan.map.moved);
+    ControlFrame frame{plan.map.targetBox, plan.map.targetDomain, {}, there.get()};
     for (std::size_t axis = 0; axis < 3; ++axis) frame.tiles[axis] = plan.block.border[axis] == Border::Tile;
-    if (options.exemplarMap || options.rotationMap || options.scaleMap)
+    if (options.exemplarMap || rotatesOrScales(options))
         controls.wanted = wantedVariants(options.exemplarMap.get(), options.rotationMap.get(),
                                          options.scaleMap.get(), int(exemplars.size()), frame, ctx);
+    if (options.direction)
+        rotateAlong(options, exemplars, frame, plan.map.targetDomain, controls.wanted, ctx);
     if (options.exemplarMask)
         controls.mask = gatherMask(*options.exemplarMask, plan.map.exemplars.front().box, like, ctx);
     if (!options.guide) return controls;
@@ -62,7 +66,7 @@ void choose(const SynthOptions& options, const Controls& controls, SynthPlan& pl
             const RunContext& ctx) {
     if (controls.wanted.empty()) return;
     std::vector<std::int32_t> numbers;
-    if (options.rotationMap || options.scaleMap) {
+    if (rotatesOrScales(options)) {
         ChosenVariants chosen = chooseVariants(controls.wanted, ctx);
         for (ExemplarVariant& variant : chosen.variants) {
             variant.size = variantSize(plan.map.exemplars[std::size_t(variant.exemplar)].box.size(),
@@ -73,7 +77,7 @@ void choose(const SynthOptions& options, const Controls& controls, SynthPlan& pl
         numbers = chosen.number;
         message(ctx, MessageLevel::Detail,
                 std::to_string(chosen.variants.size()) + " rotated and scaled exemplars, within " +
-                    std::to_string(int(chosen.tolerance)) + " degrees of the rotation map");
+                    std::to_string(int(chosen.tolerance)) + " degrees of what is wanted");
     } else {
         for (const WantedVariant& want : controls.wanted) numbers.push_back(want.exemplar);
     }
@@ -114,7 +118,9 @@ void gatherFields(const SynthOptions& options, const LevelSets& exemplars, Contr
     plan.block.guideWeight = float(options.guideWeight);
 }
 
-SynthResult synthesized(const LevelSets& exemplars, const SynthOptions& options, const RunContext& ctx) {
+SynthResult synthesized(const LevelSets& exemplars, SynthOptions options, const RunContext& ctx) {
+    if (options.exemplarMask)
+        options.exemplarMask = maskOn(options.exemplarMask, *exemplars.front()->grid, "`exemplarMask`", ctx);
     SynthPlan plan = planSynthesis(exemplars, options, ctx);
     Held held;
     Controls controls = readControls(options, exemplars, plan, ctx);
@@ -142,6 +148,29 @@ SynthResult synthesized(const LevelSets& exemplars, const SynthOptions& options,
 
 }  // namespace
 
+namespace {
+
+void requireOrigin(const Vec3d& origin) {
+    for (int axis = 0; axis < 3; ++axis)
+        requireOption(std::abs(origin[axis]) <= 1e30, "origin", roundedText(origin[axis], 6),
+                      "three numbers of at most 1e30 (world)");
+}
+
+void validateDirections(const SynthOptions& options) {
+    if (options.direction && options.rotationMap)
+        throw Error(ErrorCode::InvalidOption,
+                    "`direction`, `rotationMap`: give one of them; both say how the exemplar is rotated");
+    if (options.direction) requireDirection(*options.direction, "direction");
+    if (!options.exemplarDirection) return;
+    requireOption(options.direction.has_value(), "exemplarDirection", "alone",
+                  "given together with `direction`");
+    requireDirection(*options.exemplarDirection, "exemplarDirection");
+    requireOption(options.exemplarDirection->kind == DirectionSource::Kind::Axis, "exemplarDirection",
+                  "not an axis", "an axis, such as axis:x: one rotation takes it to the direction");
+}
+
+}  // namespace
+
 void validate(const SynthOptions& options, const LevelSets& exemplars) {
     if (exemplars.empty()) throw Error(ErrorCode::InvalidOption, "synthesis needs at least one exemplar");
     requireOption(!options.exemplarMap || exemplars.size() > 1, "exemplarMap", "for one exemplar",
@@ -163,16 +192,16 @@ void validate(const SynthOptions& options, const LevelSets& exemplars) {
                   "exemplarGuides", std::to_string(options.exemplarGuides.size()), "one for each exemplar");
     for (const GridConstPtr& guide : options.exemplarGuides)
         requireOption(guide != nullptr, "exemplarGuides", "null", "a grid for each exemplar");
-    if (exemplars.size() > 1 && !options.exemplarMap && (options.rotationMap || options.scaleMap))
+    if (exemplars.size() > 1 && !options.exemplarMap && rotatesOrScales(options))
         throw Error(ErrorCode::InvalidOption,
-                    "`rotationMap`, `scaleMap`: several exemplars also need an `exemplarMap`");
+                    "`rotationMap`, `scaleMap`, `direction`: several exemplars also need an `exemplarMap`");
+    validateDirections(options);
     for (std::size_t e = 0; e < exemplars.size(); ++e)
         requireModel(exemplars[e],
                      exemplars.size() > 1 ? "exemplar " + std::to_string(e + 1) : "the exemplar");
     if (options.exemplarBox) requireBox(*options.exemplarBox, "exemplarBox");
-    if (!options.exemplarMask) return;
-    requireMaskFor(*options.exemplarMask, *exemplars.front()->grid);
-    activeBox(*options.exemplarMask);
+    if (options.origin) requireOrigin(*options.origin);
+    if (options.exemplarMask) activeBox(*options.exemplarMask);
 }
 
 SynthResult synthesize(const LevelSets& exemplars, const SynthOptions& options, const RunContext& ctx) {

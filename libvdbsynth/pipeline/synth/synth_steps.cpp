@@ -6,6 +6,7 @@
 #include "libvdbsynth/distance/widen_band.h"
 #include "libvdbsynth/grid/islands.h"
 #include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/mask.h"
 
 #include <openvdb/openvdb.h>
@@ -100,11 +101,13 @@ void requireDefaultMethod(const SynthOptions& options, const SynthPlan& plan) {
         if (grid && (options.method != SynthesisMethod::Default || options.draft))
             throw Error(ErrorCode::InvalidOption,
                         std::string("`") + name + "`: needs `method` default and no `draft`");
+    if (options.direction && (options.method != SynthesisMethod::Default || options.draft))
+        throw Error(ErrorCode::InvalidOption, "`direction`: needs `method` default and no `draft`");
     const bool object = std::count(plan.block.border.begin(), plan.block.border.end(), Border::Object) > 0;
-    if (object && (options.rotationMap || options.scaleMap))
-        throw Error(
-            ErrorCode::InvalidOption,
-            "`rotationMap`, `scaleMap`: an object border cannot be rotated; give `border` cut or tile");
+    if (object && rotatesOrScales(options))
+        throw Error(ErrorCode::InvalidOption,
+                    "`rotationMap`, `scaleMap`, `direction`: an object border cannot be rotated; give "
+                    "`border` cut or tile");
 }
 
 // Several exemplars: each with its own domain, but along axes that do not grow the first one's extent.
@@ -113,7 +116,7 @@ void addExemplars(const LevelSets& exemplars, const SynthOptions& options, Synth
     std::array<bool, 3> grown{};
     for (int axis = 0; axis < 3; ++axis)
         grown[std::size_t(axis)] = map.targetBox.size()[axis] != map.exemplars.front().box.size()[axis];
-    if (exemplars.size() > 1 || options.rotationMap || options.scaleMap) plan.block.grows = grown;
+    if (exemplars.size() > 1 || rotatesOrScales(options)) plan.block.grows = grown;
     for (std::size_t e = 1; e < exemplars.size(); ++e) {
         MappedExemplar other;
         other.box = other.domain = exemplars[e]->domain;
@@ -195,6 +198,7 @@ SynthPlan planSynthesis(const LevelSets& exemplars, const SynthOptions& options,
     plan.map.exemplars = {first};
     requireDefaultMethod(options, plan);
     padForTiling(plan, options);
+    if (options.origin) plan.map.moved = movedTo(*options.origin, plan.map.targetDomain, *exemplar.grid);
     plan.block.size = plan.map.targetBox.size();
     plan.block.block = options.block;
     plan.block.levels = options.levels;
@@ -221,6 +225,17 @@ SynthPlan planSynthesis(const LevelSets& exemplars, const SynthOptions& options,
     plan.bytes = requireMemoryFor(ctx, plan.map, exemplars);
     identify(exemplars, plan.map);
     return plan;
+}
+
+Vec3d movedTo(const Vec3d& origin, const IndexBox& domain, const openvdb::FloatGrid& like) {
+    const openvdb::Vec3d corner(domain.min.x - 0.5, domain.min.y - 0.5, domain.min.z - 0.5);
+    return origin - fromVec(like.transform().indexToWorld(corner));
+}
+
+FloatGridConstPtr movedGrid(const openvdb::FloatGrid& grid, const Vec3d& by) {
+    const openvdb::math::Transform::Ptr transform = grid.transform().copy();
+    transform->postTranslate(toVec(by));
+    return grid.copyReplacingTransform(transform);
 }
 
 double requireMemoryFor(const RunContext& ctx, const SourceMap& map, const LevelSets& exemplars) {
@@ -294,6 +309,8 @@ LevelSet finishSynthesis(const SourceMap& map, BrickField voted, const ExemplarF
     close.draft = map.draft && map.halfWidth == kHalfWidth;
     const BrickField band = closedBand(field, corner, close, ctx);
     model.grid = levelSetFrom(band, map.halfWidth, like, "the result", ctx);
+    if (dot(map.moved, map.moved) > 0)
+        model.grid->setTransform(movedGrid(like, map.moved)->transform().copy());
     model.domain = map.targetDomain;
     model.domainRecorded = true;
     stampLevelSet(model);

@@ -2,6 +2,7 @@
 #include "libvdbsynth/pipeline/synth/synth.h"
 #include "libvdbsynth/synth/block_synthesis.h"
 #include "libvdbsynth/vdb/attribute_transfer.h"
+#include "libvdbsynth/vdb/control_grids.h"
 
 #include <memory>
 #include <vector>
@@ -17,6 +18,16 @@ struct SynthPlan {
     double bytes = 0;  ///< that the run is expected to need
 };
 
+/// True if places of the result have exemplars of their own rotation or scale.
+bool rotatesOrScales(const SynthOptions& options);
+
+/// Sets the rotations of what is wanted by SynthOptions::direction, along the direction of each one's
+/// exemplar, in the voxels of `frame`; a note says which directions were taken where none was given.
+/// @param wanted  of every variantPlaces(frame)
+/// @throw Error as directionsInSpace (pipeline/direction/place_directions.h)
+void rotateAlong(const SynthOptions& options, const LevelSets& exemplars, const ControlFrame& frame,
+                 const IndexBox& domain, std::vector<WantedVariant>& wanted, const RunContext& ctx);
+
 /// Exemplars as blocks are searched in them (at half the resolution for a draft), and as the result is read
 /// from them; without variants. The same fields but for a draft.
 struct SearchedFields {
@@ -29,6 +40,12 @@ SynthPlan planSynthesis(const LevelSets& exemplars, const SynthOptions& options,
 
 /// @return bytes that a result through a map needs @throw Error Memory
 double requireMemoryFor(const RunContext& ctx, const SourceMap& map, const LevelSets& exemplars);
+
+/// How far a domain is moved so that its minimum corner comes to `origin`. [world]
+Vec3d movedTo(const Vec3d& origin, const IndexBox& domain, const openvdb::FloatGrid& like);
+
+/// A grid at another place, which shares the other's tree. [world]
+FloatGridConstPtr movedGrid(const openvdb::FloatGrid& grid, const Vec3d& by);
 
 SearchedFields gatherExemplars(const SourceMap& map, const LevelSets& exemplars, const RunContext& ctx);
 

@@ -147,12 +147,7 @@ void validate(const TextureOptions& options) {
                   "auto, weight or histogram: gaps between patches are mixed");
     requireOption(blend != SampleBlend::Weight || method == TextureMethod::Parameterize, "blend", "weight",
                   "off, auto or histogram");
-    if (!options.direction) return;
-    using Kind = DirectionSource::Kind;
-    const DirectionSource& direction = *options.direction;
-    requireOption(direction.kind != Kind::Grid || direction.grid, "direction", "grid", "given with its grid");
-    requireOption(direction.kind != Kind::Strokes || !direction.strokes.empty(), "direction", "strokes",
-                  "given with strokes");
+    if (options.direction) requireDirection(*options.direction, "direction");
 }
 
 std::vector<SampleImage> imagesOf(const std::vector<TextureSample>& samples) {

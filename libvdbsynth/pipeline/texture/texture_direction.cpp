@@ -4,14 +4,12 @@
 #include "libvdbsynth/pipeline/texture/texture_steps.h"
 #include "libvdbsynth/points/surface_sites.h"
 #include "libvdbsynth/surface/curvature_direction.h"
-#include "libvdbsynth/vdb/grid_reader.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 namespace vdbsynth {
 namespace {
@@ -20,13 +18,6 @@ using Kind = DirectionSource::Kind;
 
 constexpr std::size_t kStrokeSites = 8;  // nearest sites that a stroke applies to
 constexpr std::size_t kCurvatureNeighbours = 8;
-
-GridReader directionReader(const openvdb::GridBase& grid) {
-    if (GridReader vectors = vectorReader(grid, GridSampling::Linear)) return vectors;
-    if (GridReader gradient = gradientReader(grid)) return gradient;
-    throw Error(ErrorCode::BadData, "`direction`: grid " + grid.getName() + " holds " + grid.valueType() +
-                                        "; vectors or a float scalar are needed");
-}
 
 Vec3d middleOf(const TextureShape& shape) {
     Vec3d low = cast<double>(shape.site.front()), high = low;
@@ -61,12 +52,7 @@ std::vector<Vec3f> siteDirections(const TextureShape& shape, const DirectionSour
     if (source.kind == Kind::Automatic)
         return curvatureDirections(sitesOfPoints(shape.site, shape.normal, kCurvatureNeighbours, ctx), ctx);
     if (source.kind == Kind::Strokes) return strokeDirections(shape, source.strokes);
-    const Vec3d middle = middleOf(shape);
-    std::function<Vec3d(const Vec3d&)> reader = [&](const Vec3d&) { return source.axis; };
-    if (source.kind == Kind::Around) reader = [&](const Vec3d& p) { return cross(source.axis, p - middle); };
-    if (source.kind == Kind::Radial) reader = [&](const Vec3d& p) { return p - middle; };
-    if (source.kind == Kind::Grid)
-        reader = [grid = directionReader(*source.grid)](const Vec3d& p) { return grid(p).value; };
+    const auto reader = directionReader(source, middleOf(shape), "direction");
     std::vector<Vec3f> given(shape.site.size(), Vec3f{0, 0, 0});
     Stage stage(ctx, "directions", given.size());
     for (std::size_t i = 0; i < given.size(); ++i) {

@@ -2,10 +2,12 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/coordinates/coordinate_synthesis.h"
 #include "libvdbsynth/geometry/point_cloud.h"
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/io/point_file.h"
+#include "libvdbsynth/points/surface_sites.h"
 #include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
 
 #include <algorithm>
@@ -243,6 +245,12 @@ TextureShape targetOf(const LevelSet& model, const std::string& name, const RunC
     shape.name = name;
     withThreads(ctx, [&] { takeLevelSet(shape, model, ctx); });
     return shape;
+}
+
+double siteSpacing(const TextureShape& shape, const RunContext& ctx) {
+    return withThreads(ctx, [&] {
+        return meanNearestDistance(sitesOfPoints(shape.site, shape.normal, kSiteNeighbours, ctx));
+    });
 }
 
 }  // namespace vdbsynth

@@ -58,4 +58,9 @@ TargetKind kindOf(const std::string& path);
 /// Sites and their normals from elements. @param normals  [elements] or empty: from triangles, or estimated
 void makeSites(TextureShape& shape, const std::vector<Vec3f>& normals, const RunContext& ctx = {});
 
+/// How far points are apart: the mean distance of a site to the nearest that faces the same way, the width of
+/// a pixel at a texture's scale of 1; 0 if no site has another. [world]
+/// @throw Error Cancelled   @par Cost O(sites * log sites)   @par Repeats same bits for any number of threads
+double siteSpacing(const TextureShape& shape, const RunContext& ctx = {});
+
 }  // namespace vdbsynth

@@ -189,16 +189,6 @@ TEST_CASE("makeAnalogyModel: a draft has the texture, repeats from its map, same
     CHECK(levelSetHash(*repeated.grid) == levelSetHash(*draft.model.grid));
 }
 
-TEST_CASE("parseDirection: what it takes and what it does not", "[pipeline]") {
-    CHECK(direction("axis:-y").axis.y == -1);
-    CHECK(direction("around:x").kind == DirectionSource::Kind::Around);
-    CHECK(direction("radial").kind == DirectionSource::Kind::Radial);
-    CHECK(direction("curvature").kind == DirectionSource::Kind::Automatic);
-    DirectionSource source;
-    for (const char* text : {"axis", "axis:", "axis:w", "axis:xy", "round:x", "axis:--x", ""})
-        CHECK_FALSE(parseDirection(text, source));
-}
-
 TEST_CASE("makeAnalogyModel: hollowing makes a shell of the pair's thickness, a valid level set",
           "[pipeline]") {
     const ModelPair pair = pairOf("hollow");

@@ -1,8 +1,10 @@
 #include "libvdbsynth/pipeline/fill/fill.h"
 
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/LevelSetSphere.h>
 #include <catch2/catch.hpp>
 
+#include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/pipeline/convert/field_model_steps.h"
 #include "libvdbsynth/pipeline/make/make.h"
 #include "libvdbsynth/vdb/bricks.h"
@@ -121,6 +123,37 @@ TEST_CASE("fillHoles: a notch in a slab becomes flat, and all else keeps its bit
     one.threads = 1;
     CHECK(levelSetHash(*fillHoles(partial, hole, nullptr, {}, one).model.grid) ==
           levelSetHash(*result.model.grid));
+}
+
+TEST_CASE("fillHoles: a hole in other voxels and of another band; beyond three voxels all bits stay",
+          "[pipeline][property]") {
+    const IndexBox domain{{0, 0, 0}, {95, 95, 39}};
+    const auto slab = [](const Index3& p) { return float(p.z) - 19.7f; };
+    const LevelSet partial = carved(domain, true, IndexBox{{40, 44, 12}, {55, 59, 30}}, slab);
+    const openvdb::Vec3f middle(47.6f, 51.6f, 20.3f);
+    const float radius = 16;
+    for (const float voxel : {0.5f, 1.f, 1.37f})
+        for (const float band : {2.f, 8.f}) {
+            INFO(voxel << " " << band);
+            LevelSet hole;
+            hole.grid = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(radius, middle, voxel, band);
+            hole.domain = solidBox(*hole.grid, "the hole");
+            stampLevelSet(hole);
+            const FillResult result = fillHoles(partial, hole, nullptr);
+            const auto a = partial.grid->getConstAccessor(), b = result.model.grid->getConstAccessor();
+            std::size_t beyond = 0, within = 0;
+            forEachVoxel(domain.expanded(8), [&](const Index3& p) {
+                const openvdb::Coord c(p.x, p.y, p.z);
+                const bool same = a.getValue(c) == b.getValue(c) && a.isValueOn(c) == b.isValueOn(c);
+                const bool far = (c.asVec3s() - middle).length() > radius + 3 + 0.1f;
+                (far ? beyond : within) += !same;
+            });
+            CHECK(beyond == 0);
+            CHECK(within > 300);
+            // The slab is whole again.
+            const float level = b.getValue({48, 52, 20});
+            CHECK(level == Approx(0.3).margin(0.3));
+        }
 }
 
 TEST_CASE("fillHoles: what is cut out of a texture is about as full again, from itself or from an exemplar",

@@ -1,6 +1,7 @@
 #include "libvdbsynth/pipeline/match/match.h"
 
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/LevelSetSphere.h>
 #include <catch2/catch.hpp>
 
 #include "libvdbsynth/pipeline/make/make.h"
@@ -49,6 +50,24 @@ TEST_CASE("matchModel: under a mask only its samples count", "[pipeline][propert
     CHECK(masked.matches[0].cost < all);
     options.mask = boxMask({{0, 0, 0}, {1, 1, 1}}, 1);
     CHECK(test::contains(test::thrownBy([&] { matchModel(model, query, options); }).message, "`mask`"));
+}
+
+TEST_CASE("matchModel: a mask of other voxels, or a solid of any band", "[pipeline][property]") {
+    const LevelSet model = made("balls", 1), query = made("balls", 2);
+    MatchOptions options;
+    options.block = 8;
+    options.at = {16, 16, 16};
+    options.mask = boxMask({{32, 32, 32}, {39, 47, 47}}, 0.5);
+    CHECK(matchModel(model, query, options).known == 4 * 8 * 8);
+    for (const float voxel : {0.5f, 1.37f})
+        for (const float band : {2.f, 8.f}) {
+            options.mask = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(
+                3.2f, openvdb::Vec3f(20, 20, 20), voxel, band);
+            // Places whole numbers apart with x^2 + y^2 + z^2 <= 10, but those on the ball's own facets.
+            const std::size_t known = matchModel(model, query, options).known;
+            CHECK(known >= 123);
+            CHECK(known <= 147);
+        }
 }
 
 TEST_CASE("matchModel: bad options are named", "[pipeline][error]") {

@@ -1,6 +1,7 @@
 #include "libvdbsynth/pipeline/synth/synth.h"
 
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/LevelSetPlatonic.h>
 #include <catch2/catch.hpp>
 
 #include "libvdbsynth/grid/components.h"
@@ -14,6 +15,7 @@
 #include "libvdbsynth/vdb/source_map_grids.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "tests/support/makers.h"
+#include "tests/support/said.h"
 #include "tests/support/temporary_folder.h"
 
 using namespace vdbsynth;
@@ -156,6 +158,24 @@ TEST_CASE("synthesize: sizes in voxels, an exemplar box, a mask", "[pipeline][pr
     CHECK(test::contains(test::thrownBy([&] { synthesize(exemplar, options); }).message, "`exemplarMask`"));
 }
 
+TEST_CASE("synthesize: a mask in other voxels, and a solid as a mask", "[pipeline][property]") {
+    const LevelSet exemplar = made("balls", 64);
+    SynthOptions options;
+    options.size = {Extent::voxels(70), Extent::voxels(50), Extent::multiple(1)};
+    options.block = 8;
+    options.exemplarMask = boxMask({{4, 4, 4}, {30, 43, 35}}, 1);
+    const std::string own = levelSetHash(*synthesize(exemplar, options).model.grid);
+    // The same box in halves of voxels: those nearest to the centres 4 to 30.
+    options.exemplarMask = boxMask({{8, 8, 8}, {61, 87, 71}}, 0.5);
+    CHECK(levelSetHash(*synthesize(exemplar, options).model.grid) == own);
+    // A box as a level set, not its band.
+    FloatGridPtr solid = openvdb::tools::createLevelSetBox<openvdb::FloatGrid>(
+        openvdb::BBoxd({3.5, 3.5, 3.5}, {30.5, 43.5, 35.5}),
+        *openvdb::math::Transform::createLinearTransform(0.7), 2);
+    options.exemplarMask = solid;
+    CHECK(levelSetHash(*synthesize(exemplar, options).model.grid) == own);
+}
+
 TEST_CASE("synthesize: attributes are transferred through the map, and repeated", "[pipeline][property]") {
     LevelSet exemplar = made("balls", 40);
     // A number that tells the voxel it lies on, and a colour; and a grid of an old source map, which stays
@@ -265,6 +285,37 @@ void checkRepeats(const SynthResult& result, const std::vector<const LevelSet*>&
 }
 
 }  // namespace
+
+TEST_CASE("synthesize: the result's corner goes to an origin", "[pipeline][property]") {
+    const LevelSet exemplar = made("balls", 40, 0, 0.5);
+    SynthOptions options = sized(1.5, 1, 1);
+    const SynthResult plain = synthesize(exemplar, options);
+    options.origin = Vec3d{10, -2.25, 3.1};
+    const SynthResult moved = synthesize(exemplar, options);
+    const openvdb::Vec3d corner = moved.model.grid->transform().indexToWorld(openvdb::Vec3d(
+        moved.model.domain.min.x - 0.5, moved.model.domain.min.y - 0.5, moved.model.domain.min.z - 0.5));
+    CHECK((corner - openvdb::Vec3d(10, -2.25, 3.1)).length() < 1e-9);
+    CHECK(moved.model.domain == plain.model.domain);
+    const openvdb::FloatGrid::ConstPtr back =
+        moved.model.grid->copyReplacingTransform(plain.model.grid->transform().copy());
+    CHECK(levelSetHash(*back) == levelSetHash(*plain.model.grid));
+    checkRepeats(moved, {&exemplar});
+    RepeatOptions again;
+    again.origin = Vec3d{0, 0, 0};
+    const LevelSet elsewhere = repeatMap(moved.map, {&exemplar}, again);
+    CHECK(elsewhere.grid->transform().indexToWorld(openvdb::Vec3d(-0.5)).length() < 1e-9);
+    // Controls are read where the result lies.
+    const LevelSet fibres = made("fibres", 48);
+    SynthOptions turned = sized(2, 2, 1);
+    turned.rotationMap = boxGrid({{0, 0, 0}, {47, 95, 47}}, 1.5f);
+    const std::string there = levelSetHash(*synthesize(fibres, turned).model.grid);
+    turned.origin = Vec3d{499.5, -0.5, -0.5};
+    turned.rotationMap = boxGrid({{500, 0, 0}, {547, 95, 47}}, 1.5f);
+    const SynthResult far = synthesize(fibres, turned);
+    const openvdb::FloatGrid::ConstPtr home =
+        far.model.grid->copyReplacingTransform(fibres.grid->transform().copy());
+    CHECK(levelSetHash(*home) == there);
+}
 
 TEST_CASE("synthesize: no part is smaller than the exemplar's smallest", "[pipeline][property]") {
     for (const char* kind : {"balls", "chainmail"}) {
@@ -381,6 +432,48 @@ TEST_CASE("synthesize: rotated and scaled by maps", "[pipeline][property]") {
     CHECK(density(larger.model) == Approx(density(fibres) / 1.5).epsilon(0.15));
     checkRepeats(larger, {&fibres});
     options.border = {Border::Object, Border::Object, Border::Object};
+    CHECK(test::thrownBy([&] { synthesize(fibres, options); }).code == int(ErrorCode::InvalidOption));
+}
+
+TEST_CASE("synthesize: the exemplar rotated along a field of directions", "[pipeline][property]") {
+    // Fibres run along x; around the middle they run in circles.
+    const LevelSet fibres = made("fibres", 48);
+    SynthOptions options = sized(2, 2, 1);
+    options.direction = DirectionSource{};
+    options.direction->kind = DirectionSource::Kind::Around;
+    test::Said said;
+    const SynthResult result = synthesize(fibres, options, said.ctx);
+    CHECK(said.noted("is taken to run along axis:x"));
+    const openvdb::FloatGrid& grid = *result.model.grid;
+    double along = 0, across = 0;
+    for (auto it = grid.cbeginValueOn(); it; ++it) {
+        const openvdb::Coord c = it.getCoord();
+        const double x = c.x() - 47.5, y = c.y() - 47.5, r = std::sqrt(x * x + y * y);
+        if (r < 16 || r > 44 || c.z() < 4 || c.z() > 43 || std::abs(*it) > 1) continue;
+        const auto& tree = grid.tree();
+        const double dx =
+            double(tree.getValue(c.offsetBy(1, 0, 0)) - tree.getValue(c.offsetBy(-1, 0, 0))) / 2;
+        const double dy =
+            double(tree.getValue(c.offsetBy(0, 1, 0)) - tree.getValue(c.offsetBy(0, -1, 0))) / 2;
+        along += std::abs(dy * x - dx * y) / r;
+        across += std::abs(dx * x + dy * y) / r;
+    }
+    CHECK(along < 0.5 * across);
+    checkRepeats(result, {&fibres});
+    // The exemplar's own direction: along y nothing rotates along y.
+    options.direction->kind = options.exemplarDirection.emplace().kind = DirectionSource::Kind::Axis;
+    options.direction->axis = options.exemplarDirection->axis = {0, 1, 0};
+    const SynthResult plain = synthesize(fibres, options);
+    REQUIRE(plain.map.variants.size() == 1);
+    CHECK(plain.map.variants[0].plain());
+    // It cannot vary, nor be alone, nor be given beside a map.
+    options.exemplarDirection->kind = DirectionSource::Kind::Radial;
+    CHECK(test::thrownBy([&] { synthesize(fibres, options); }).code == int(ErrorCode::InvalidOption));
+    options.exemplarDirection->kind = DirectionSource::Kind::Axis;
+    options.rotationMap = boxGrid({{0, 0, 0}, {95, 95, 47}}, 1);
+    CHECK(test::thrownBy([&] { synthesize(fibres, options); }).code == int(ErrorCode::InvalidOption));
+    options.rotationMap.reset();
+    options.direction.reset();
     CHECK(test::thrownBy([&] { synthesize(fibres, options); }).code == int(ErrorCode::InvalidOption));
 }
 

@@ -1,12 +1,34 @@
 // Words for directions, apart from what needs grids: options are read without them.
-#include "libvdbsynth/pipeline/analogy/analogy.h"
+#include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/pipeline/direction/direction.h"
+
+#include <cmath>
 
 namespace vdbsynth {
+namespace {
+
+using Kind = DirectionSource::Kind;
+
+bool parseVector(const std::string& text, Vec3d& vector) {
+    std::size_t begin = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::size_t comma = axis < 2 ? text.find(',', begin) : text.size();
+        if (comma == std::string::npos || !parseReal(text.substr(begin, comma - begin), vector[axis]))
+            return false;
+        begin = comma + 1;
+    }
+    return std::isfinite(dot(vector, vector)) && dot(vector, vector) > 0;
+}
+
+}  // namespace
 
 bool parseDirection(const std::string& text, DirectionSource& source) {
-    using Kind = DirectionSource::Kind;
     if (text == "radial" || text == "curvature") {
         source.kind = text == "radial" ? Kind::Radial : Kind::Automatic;
+        return true;
+    }
+    if (parseVector(text, source.axis)) {
+        source.kind = Kind::Axis;
         return true;
     }
     const std::size_t colon = text.find(':');

@@ -4,8 +4,6 @@
 #include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/source_map_grids.h"
 
-#include <openvdb/openvdb.h>
-
 #include <algorithm>
 #include <string>
 #include <type_traits>
@@ -105,7 +103,7 @@ GridPtr fogThrough(const SourceMap& map, const std::vector<LevelSet>& exemplars,
 template <typename Grid>
 bool hasBeyond(const Grid& grid, const openvdb::FloatGrid& levelSet) {
     const auto accessor = levelSet.getConstAccessor();
-    const openvdb::Index64 enough = grid.activeVoxelCount() / 100;
+    const openvdb::Index64 enough = anyKind(grid).activeVoxelCount() / 100;
     openvdb::Index64 beyond = 0;
     for (auto value = grid.cbeginValueOn(); value; ++value) {
         const openvdb::Vec3d world = grid.indexToWorld(value.getCoord().asVec3d());
@@ -119,7 +117,7 @@ bool hasBeyond(const Grid& grid, const openvdb::FloatGrid& levelSet) {
 // Adds what is active in `over`, of the same transform.
 template <typename Grid>
 GridPtr withOver(const Grid& own, const Grid& over) {
-    const typename Grid::Ptr result = own.deepCopy();
+    const auto result = openvdb::gridPtrCast<Grid>(anyKind(own).deepCopyGrid());
     auto accessor = result->getAccessor();
     for (auto value = over.cbeginValueOn(); value; ++value) {
         if (value.isVoxelValue())

@@ -7,15 +7,13 @@
 #include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/wall.h"
 
-#include <openvdb/openvdb.h>
-
 #include <cmath>
 
 namespace vdbsynth {
 namespace {
 
 openvdb::BoolGrid::Ptr emptyMask(const openvdb::math::Transform::Ptr& transform) {
-    auto mask = openvdb::BoolGrid::create(false);
+    auto mask = emptyGrid<openvdb::BoolGrid>();
     mask->setName("mask");
     mask->setTransform(transform);
     return mask;

@@ -5,9 +5,8 @@
 #include "libvdbsynth/pipeline/analogy/analogy_steps.h"
 #include "libvdbsynth/surface/curvature_direction.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/grid_reader.h"
-
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 #include <functional>

@@ -6,9 +6,8 @@
 #include "libvdbsynth/distance/widen_band.h"
 #include "libvdbsynth/grid/islands.h"
 #include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/mask.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>

@@ -78,7 +78,7 @@ class Demo(SomeCommands):
         self.assertTrue(used and used <= set(demo_commands().split(";")), used)
         made = run(program, "make", "grid", self.path("grid.vdb"), "--resolution", "24")
         self.assertEqual(made.returncode, 0, made.stderr)
-        drawn = run(program, "render", self.path("grid.vdb"), "-o", self.path("grid.png"), "--size", "64,48")
+        drawn = run(program, "render", self.path("grid.vdb"), "-o", self.path("grid.png"), "--size", "64x48")
         self.assertEqual(drawn.returncode, 0, drawn.stderr)
         refused = run(program, "analogy", "a.vdb")
         self.assertEqual((refused.returncode, refused.stdout), (2, ""))

@@ -4,9 +4,9 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tools/dev/packages.sh build
-# No tests: their libraries need not be here.
-cmake --preset release -DVDBSYNTH_BUILD_TESTS=OFF >/dev/null
-cmake --build --preset release --target vdb_synth
+# A new folder gets the commands that are used here, without tests; one that is there already is built as it is set.
+if [ -f build/release/CMakeCache.txt ]; then cmake build/release >/dev/null; else cmake --preset demo >/dev/null; fi
+cmake --build build/release --target vdb_synth
 demo=${1:-build/demo}
 mkdir -p "$demo"
 vdb_synth=build/release/tools/vdb_synth/vdb_synth
@@ -18,3 +18,6 @@ echo
 echo "The exemplar:   $demo/grid.vdb    $demo/grid.png"
 echo "More of it:"
 for file in more.vdb more.obj more.ply more.png; do echo "$(realpath "$demo/$file")"; done
+if ! "$vdb_synth" help analogy >/dev/null 2>&1; then
+  echo "Built for this: $("$vdb_synth" --help | sed -n 's/^  \([a-z-]*\)  .*/\1/p' | paste -sd' '). All commands: cmake --preset release && cmake --build --preset release"
+fi

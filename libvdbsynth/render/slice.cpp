@@ -6,9 +6,9 @@
 #include "libvdbsynth/render/drawn_text.h"
 #include "libvdbsynth/render/preview.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/level_set.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/Interpolation.h>
 
 #include <algorithm>

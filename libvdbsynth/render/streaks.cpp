@@ -3,8 +3,7 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/random.h"
 #include "libvdbsynth/vdb/coord.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <cmath>

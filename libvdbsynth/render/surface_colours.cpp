@@ -2,8 +2,7 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/vdb/coord.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <cctype>

@@ -6,9 +6,8 @@
 #include "libvdbsynth/grid/brick_field.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/level_set.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>

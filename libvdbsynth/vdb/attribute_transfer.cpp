@@ -6,8 +6,6 @@
 #include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/source_map_grids.h"
 
-#include <openvdb/openvdb.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -83,9 +81,7 @@ GridPtr readThrough(const Grid& grid, const std::vector<Link>& links, const open
                     const GridPtr& into, int within) {
     auto made = openvdb::gridPtrCast<Grid>(into);
     if (!made) {
-        made = Grid::create(grid.background());
-        made->insertMeta(grid);
-        made->setName(grid.getName());
+        made = openvdb::gridPtrCast<Grid>(anyKind(grid).copyGridWithNewTree());
         made->setTransform(result.transform().copy());
     }
     const bool directional = grid.getVectorType() != openvdb::VEC_INVARIANT;

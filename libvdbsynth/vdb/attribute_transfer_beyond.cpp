@@ -4,11 +4,8 @@
 #include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/source_map_grids.h"
 
-#include <openvdb/openvdb.h>
-
 #include <algorithm>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 namespace vdbsynth {
@@ -105,7 +102,7 @@ GridPtr fogThrough(const SourceMap& map, const std::vector<LevelSet>& exemplars,
 template <typename Grid>
 bool hasBeyond(const Grid& grid, const openvdb::FloatGrid& levelSet) {
     const auto accessor = levelSet.getConstAccessor();
-    const openvdb::Index64 enough = grid.activeVoxelCount() / 100;
+    const openvdb::Index64 enough = anyKind(grid).activeVoxelCount() / 100;
     openvdb::Index64 beyond = 0;
     for (auto value = grid.cbeginValueOn(); value; ++value) {
         const openvdb::Vec3d world = grid.indexToWorld(value.getCoord().asVec3d());
@@ -114,20 +111,6 @@ bool hasBeyond(const Grid& grid, const openvdb::FloatGrid& levelSet) {
         if (beyond > enough) return true;
     }
     return false;
-}
-
-// Adds what is active in `over`, of the same transform.
-template <typename Grid>
-GridPtr withOver(const Grid& own, const Grid& over) {
-    const typename Grid::Ptr result = own.deepCopy();
-    auto accessor = result->getAccessor();
-    for (auto value = over.cbeginValueOn(); value; ++value) {
-        if (value.isVoxelValue())
-            accessor.setValueOn(value.getCoord(), *value);
-        else
-            result->tree().addTile(value.getLevel(), value.getCoord(), *value, true);
-    }
-    return result;
 }
 
 }  // namespace
@@ -180,37 +163,6 @@ std::vector<GridPtr> transferBeyondBand(const SourceMap& map, const std::vector<
         });
     for (const GridPtr& grid : into) grid->pruneGrid();
     return into;
-}
-
-void noteBandOnly(const std::vector<const LevelSet*>& exemplars, const RunContext& ctx) {
-    for (const LevelSet* exemplar : exemplars)
-        for (const GridPtr& grid : exemplar->attributes)
-            if (!isOfSourceMap(grid->getName()) && isBeyondBand(grid, *exemplar->grid))
-                message(
-                    ctx, MessageLevel::Note,
-                    "grid \"" + grid->getName() +
-                        "\" of the textured model is brought near the surface only: what is deep inside has "
-                        "no counterpart in another model");
-}
-
-std::vector<GridPtr> laidOver(const std::vector<GridPtr>& own, const std::vector<GridPtr>& brought) {
-    std::vector<GridPtr> result = brought;
-    for (const GridPtr& grid : own) {
-        if (isOfSourceMap(grid->getName())) continue;
-        const auto same = std::find_if(result.begin(), result.end(), [&](const GridPtr& other) {
-            return other->getName() == grid->getName() && other->type() == grid->type() &&
-                   other->transform() == grid->transform();
-        });
-        if (same == result.end()) {
-            result.push_back(grid);
-            continue;
-        }
-        grid->apply<AttributeGrids>([&](const auto& typed) {
-            using Grid = std::decay_t<decltype(typed)>;
-            *same = withOver(typed, *openvdb::gridPtrCast<Grid>(*same));
-        });
-    }
-    return result;
 }
 
 }  // namespace vdbsynth

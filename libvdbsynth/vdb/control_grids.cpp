@@ -6,13 +6,12 @@
 #include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/math/trigonometry.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/grid_reader.h"
 #include "libvdbsynth/vdb/level_set.h"
 #include "libvdbsynth/vdb/mask.h"
 #include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/vdb_file.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <array>

@@ -5,8 +5,7 @@
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/vdb/coord.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <cmath>

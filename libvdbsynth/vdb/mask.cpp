@@ -10,8 +10,6 @@
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "libvdbsynth/vdb/wall.h"
 
-#include <openvdb/openvdb.h>
-
 #include <cmath>
 
 namespace vdbsynth {
@@ -20,7 +18,7 @@ namespace {
 constexpr double kFar = 1 << 28;  // [voxels] beyond this, sizes of boxes exceed int
 
 openvdb::BoolGrid::Ptr emptyMask(const openvdb::math::Transform::Ptr& transform) {
-    auto mask = openvdb::BoolGrid::create(false);
+    auto mask = emptyGrid<openvdb::BoolGrid>();
     mask->setName("mask");
     mask->setTransform(transform);
     return mask;

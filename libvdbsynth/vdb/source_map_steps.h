@@ -1,7 +1,6 @@
 #pragma once
 #include "libvdbsynth/math/vec3.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <string>
 #include <vector>

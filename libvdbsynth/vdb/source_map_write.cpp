@@ -63,7 +63,7 @@ public:
     /// A grid of integer vectors.
     GridPtr places(const char* name, const std::vector<std::pair<openvdb::Coord, Vec3d>>& values) const {
         if (mTypes == MapTypes::Integer)
-            return filled(openvdb::Vec3IGrid::create(openvdb::Vec3i(0)), name, values,
+            return filled(emptyGrid<openvdb::Vec3IGrid>(), name, values,
                           [](const Vec3d& v) { return openvdb::Vec3i(int(v.x), int(v.y), int(v.z)); });
         for (const auto& [at, v] : values)
             if (std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) > kExactFloat)

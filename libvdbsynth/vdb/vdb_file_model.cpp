@@ -6,13 +6,12 @@
 #include "libvdbsynth/vdb/convert/surface_kept.h"
 #include "libvdbsynth/vdb/convert/zero_level.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/read/field_kind.h"
 #include "libvdbsynth/vdb/read/level_set_repair.h"
 #include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "libvdbsynth/vdb/wall.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,10 +3,9 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/printable_text.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/read/field_kind.h"
 #include "libvdbsynth/vdb/read/grid_names.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 

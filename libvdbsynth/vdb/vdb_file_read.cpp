@@ -3,6 +3,7 @@
 #include "libvdbsynth/io/readers/gzip.h"
 #include "libvdbsynth/io/readers/whole_file.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/read/grid_names.h"
 #include "libvdbsynth/vdb/read/metadata_format.h"
 #include "libvdbsynth/vdb/read/vdb_layout.h"
@@ -11,7 +12,6 @@
 
 #include <openvdb/io/File.h>
 #include <openvdb/io/Stream.h>
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <filesystem>

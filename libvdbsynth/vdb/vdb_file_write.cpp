@@ -1,10 +1,10 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/hash.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "libvdbsynth/vdb/wall.h"
 
 #include <openvdb/io/Archive.h>
-#include <openvdb/openvdb.h>
 
 #include <cerrno>
 #include <cstring>

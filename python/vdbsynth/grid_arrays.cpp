@@ -4,9 +4,8 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/run_context.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/level_set.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>

@@ -5,9 +5,8 @@
 #include "python/vdbsynth/values.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/level_set.h"
-
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 

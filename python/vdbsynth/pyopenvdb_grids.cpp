@@ -1,9 +1,9 @@
 // The one file with Boost.Python.
+#include "libvdbsynth/vdb/grid_kinds.h"
+
 #include <boost/python.hpp>
 
 #include "python/vdbsynth/pyopenvdb_grids.h"
-
-#include <openvdb/openvdb.h>
 
 namespace vdbsynth::python {
 namespace {

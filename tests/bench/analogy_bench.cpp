@@ -2,7 +2,6 @@
 // Usage: analogy_bench B.vdb; prints one JSON object. Both ways are asked about the same voxels, those that
 // an analogy works out, with B' as it is when the analogy is done; distances are those of whole features, not
 // of reduced ones.
-#include <openvdb/openvdb.h>
 #include <flann/flann.hpp>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +11,7 @@
 #include "libvdbsynth/pipeline/analogy/analogy_steps.h"
 #include "libvdbsynth/pipeline/make/make.h"
 #include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 
 #include <algorithm>

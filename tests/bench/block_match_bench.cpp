@@ -14,8 +14,7 @@
 #include "libvdbsynth/search/block_index.h"
 #include "libvdbsynth/search/block_index_data.h"
 #include "libvdbsynth/vdb/bricks.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <chrono>

@@ -46,6 +46,11 @@ add_cli_test(programs_test Programs)
 add_cli_test(troubleshooting_test Words Provoked)
 add_cli_test(docs_test Links Options Commands)
 
+# Links the objects of this build into programs of few commands.
+add_cli_test(demo_build_test Demo Each)
+set_tests_properties("cli: demo_build_test Demo" "cli: demo_build_test Each" PROPERTIES ENVIRONMENT "${CLI_ENVIRONMENT};VDBSYNTH_BUILD=${PROJECT_BINARY_DIR}")
+set_tests_properties("cli: demo_build_test Each" PROPERTIES LABELS "all;slow")
+
 # Packs the build folder and makes a bare Debian: tools/run_tests.sh --all.
 add_cli_test(packages_test Packages)
 set_tests_properties("cli: packages_test Packages" PROPERTIES ENVIRONMENT "${CLI_ENVIRONMENT};VDBSYNTH_BUILD=${PROJECT_BINARY_DIR}" LABELS all)

@@ -1,5 +1,4 @@
 // Calls at one time, as a host with threads of its own makes them.
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include <atomic>
@@ -12,6 +11,7 @@
 #include "libvdbsynth/pipeline/make/make.h"
 #include "libvdbsynth/pipeline/match/match.h"
 #include "libvdbsynth/pipeline/synth/synth.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/makers.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,5 +1,4 @@
 // No function of the pipeline changes what it is given.
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <catch2/catch.hpp>
 
@@ -22,6 +21,7 @@
 #include "libvdbsynth/pipeline/synth/synth.h"
 #include "libvdbsynth/render/preview.h"
 #include "libvdbsynth/vdb/control_grids.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/mask.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "tests/support/makers.h"

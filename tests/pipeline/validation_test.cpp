@@ -1,6 +1,5 @@
 // Every public function refuses what it cannot work on, with the right code and the field's name, before any
 // work: never a crash, never nonsense.
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -24,6 +23,7 @@
 #include "libvdbsynth/render/preview.h"
 #include "libvdbsynth/render/slice.h"
 #include "libvdbsynth/synth/block_synthesis.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/mask.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "tests/support/makers.h"

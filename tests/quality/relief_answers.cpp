@@ -6,8 +6,7 @@
 #include "libvdbsynth/pipeline/relief/relief_extract.h"
 #include "libvdbsynth/relief/transfer/relief_transfer.h"
 #include "libvdbsynth/vdb/bricks.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,8 @@
 #pragma once
 #include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/quality/relief_measures.h"
 #include "tests/support/makers.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cstdio>

@@ -5,9 +5,8 @@
 #include "libvdbsynth/pipeline/relief/relief_extract.h"
 #include "libvdbsynth/relief/relief_layer.h"
 #include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/makers.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,7 @@
 #pragma once
 #include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/makers.h"
-
-#include <openvdb/openvdb.h>
 
 namespace vdbsynth::test {
 

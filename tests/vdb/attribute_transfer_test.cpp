@@ -1,10 +1,10 @@
 #include "libvdbsynth/vdb/attribute_transfer.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include "libvdbsynth/math/trigonometry.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/makers.h"
 
 #include <atomic>

@@ -1,11 +1,11 @@
 #include "libvdbsynth/vdb/bricks.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>
 
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/level_set.h"
 #include "tests/support/makers.h"
 

@@ -1,10 +1,10 @@
 #include "libvdbsynth/vdb/control_grids.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <catch2/catch.hpp>
 
 #include "libvdbsynth/math/lattice.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/makers.h"
 
 #include <algorithm>

@@ -2,7 +2,6 @@
 
 #include <catch2/catch.hpp>
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
 #include <atomic>
@@ -10,6 +9,7 @@
 #include <limits>
 
 #include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/comma_locale.h"
 #include "tests/support/makers.h"
 

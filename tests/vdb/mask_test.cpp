@@ -1,11 +1,11 @@
 #include "libvdbsynth/vdb/mask.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <catch2/catch.hpp>
 
 #include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/makers.h"
 
 using namespace vdbsynth;

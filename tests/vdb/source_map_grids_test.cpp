@@ -1,11 +1,11 @@
 #include "libvdbsynth/vdb/source_map_grids.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include "libvdbsynth/pipeline/analogy/analogy.h"
 #include "libvdbsynth/pipeline/make/make.h"
 #include "libvdbsynth/pipeline/synth/synth.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "tests/support/makers.h"
 #include "tests/support/temporary_folder.h"

@@ -1,6 +1,5 @@
 #include "libvdbsynth/vdb/vdb_file.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/comma_locale.h"
 #include "tests/support/makers.h"
 #include "tests/support/temporary_folder.h"

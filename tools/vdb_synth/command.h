@@ -109,6 +109,12 @@ struct Command {
 const std::vector<const Command*>& commands();
 /// Null if no command has that name.
 const Command* findCommand(const std::string& name);
+/// Commands that are not in this build (VDBSYNTH_COMMANDS of CMake), usually none.
+const std::vector<std::string>& leftOutCommands();
+/// What is said of a name that is no command here: that the build leaves it out and how to build it, or that
+/// it is unknown, with the nearest of `candidates`.
+std::string notACommand(const std::string& name, const std::vector<std::string>& candidates,
+                        const std::vector<std::string>& leftOut = leftOutCommands());
 
 /// `vdb_synth COMMAND --help`: its options in groups, see options.h.
 std::string helpText(const Command& command);

@@ -115,11 +115,7 @@ int dispatch(char** argv, const std::string& name, const std::vector<std::string
     if (!command) {
         std::vector<std::string> names{"help", "completion"};
         for (const Command* known : commands()) names.push_back(known->name);
-        const std::string near = nearestName(name, names);
-        return fail(Error(ErrorCode::InvalidOption,
-                          name + ": unknown command" +
-                              (near.empty() ? "; see vdb_synth --help" : "; did you mean " + near + "?")),
-                    "");
+        return fail(Error(ErrorCode::InvalidOption, notACommand(name, names)), "");
     }
     Arguments arguments;
     try {

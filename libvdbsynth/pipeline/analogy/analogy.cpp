@@ -9,8 +9,7 @@
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/control_grids.h"
 #include "libvdbsynth/vdb/coord.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <array>

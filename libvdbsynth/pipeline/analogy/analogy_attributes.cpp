@@ -4,9 +4,8 @@
 #include "libvdbsynth/pipeline/analogy/analogy_steps.h"
 #include "libvdbsynth/vdb/attribute_transfer.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/source_map_grids.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>

@@ -5,8 +5,7 @@
 #include "libvdbsynth/pipeline/analogy/analogy_steps.h"
 #include "libvdbsynth/surface/curvature_direction.h"
 #include "libvdbsynth/vdb/coord.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <cmath>
 

@@ -4,8 +4,7 @@
 #include "libvdbsynth/grid/field_sampling.h"
 #include "libvdbsynth/pipeline/analogy/analogy_steps.h"
 #include "libvdbsynth/vdb/bricks.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <cmath>

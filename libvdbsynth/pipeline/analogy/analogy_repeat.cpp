@@ -8,8 +8,7 @@
 #include "libvdbsynth/vdb/attribute_transfer.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/convert/kept_voxels.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <array>

@@ -5,8 +5,8 @@
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/Count.h>
 
 #include <algorithm>

@@ -4,9 +4,8 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/source_map_grids.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>

@@ -7,8 +7,7 @@
 #include "libvdbsynth/base/random.h"
 #include "libvdbsynth/pipeline/make/make.h"
 #include "libvdbsynth/vdb/bricks.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <map>

@@ -4,8 +4,7 @@
 #include "libvdbsynth/distance/close_field.h"
 #include "libvdbsynth/distance/rebuild_band.h"
 #include "libvdbsynth/vdb/bricks.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 namespace vdbsynth {
 namespace {

@@ -15,10 +15,10 @@
 #include "libvdbsynth/pipeline/convert/model_unit.h"
 #include "libvdbsynth/vdb/convert/attribute_grids.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/ChangeBackground.h>
 
 #include <algorithm>

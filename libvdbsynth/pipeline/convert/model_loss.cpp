@@ -7,8 +7,7 @@
 #include "libvdbsynth/math/disjoint_sets.h"
 #include "libvdbsynth/pipeline/convert/model_steps.h"
 #include "libvdbsynth/vdb/convert/zero_level.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <cmath>

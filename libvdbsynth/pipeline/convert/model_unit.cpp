@@ -1,6 +1,6 @@
 #include "libvdbsynth/pipeline/convert/model_unit.h"
 
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 

@@ -3,8 +3,7 @@
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/coord.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <cstdint>
 

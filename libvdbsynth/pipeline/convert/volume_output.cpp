@@ -3,8 +3,8 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/pipeline/convert/model_unit.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/Dense.h>
 
 #include <algorithm>

@@ -5,7 +5,6 @@
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/grid_kinds.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/Clip.h>
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/vdb/grid_reader.h"
 
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <cmath>
 

@@ -11,9 +11,8 @@
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/convert/zero_level.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/redistance.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <array>

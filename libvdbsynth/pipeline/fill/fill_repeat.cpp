@@ -5,8 +5,7 @@
 #include "libvdbsynth/pipeline/fill/fill_steps.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/coord.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,7 @@
 #include "libvdbsynth/pipeline/analogy/analogy.h"
 #include "libvdbsynth/pipeline/convert/field_model_steps.h"
 #include "libvdbsynth/procedural/analogy_pair.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 namespace vdbsynth {
 

@@ -5,8 +5,7 @@
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/pipeline/convert/field_model_steps.h"
 #include "libvdbsynth/vdb/convert/level_set_to_points.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,8 +7,7 @@
 #include "libvdbsynth/pipeline/convert/model.h"
 #include "libvdbsynth/pipeline/texture/texture_steps.h"
 #include "libvdbsynth/vdb/convert/level_set_to_points.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,9 +8,9 @@
 #include "libvdbsynth/pipeline/patch/patch_onto.h"
 #include "libvdbsynth/points/point_set_surface.h"
 #include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/redistance.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/Composite.h>
 
 #include <algorithm>

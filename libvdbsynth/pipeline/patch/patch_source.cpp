@@ -9,8 +9,7 @@
 #include "libvdbsynth/points/point_set_surface.h"
 #include "libvdbsynth/vdb/convert/attribute_grids.h"
 #include "libvdbsynth/vdb/convert/level_set_to_points.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <cmath>

@@ -13,8 +13,7 @@
 #include "libvdbsynth/vdb/convert/band_grids.h"
 #include "libvdbsynth/vdb/convert/kept_voxels.h"
 #include "libvdbsynth/vdb/coord.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <cmath>

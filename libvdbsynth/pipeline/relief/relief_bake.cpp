@@ -7,8 +7,7 @@
 #include "libvdbsynth/pipeline/relief/relief_steps.h"
 #include "libvdbsynth/pipeline/texture/uv_bake.h"
 #include "libvdbsynth/vdb/bricks.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <cmath>

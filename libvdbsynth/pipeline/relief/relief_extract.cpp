@@ -8,8 +8,7 @@
 #include "libvdbsynth/pipeline/relief/relief_extract_steps.h"
 #include "libvdbsynth/relief/relief_strength.h"
 #include "libvdbsynth/vdb/bricks.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <cmath>

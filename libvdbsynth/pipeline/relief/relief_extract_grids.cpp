@@ -1,8 +1,7 @@
 // A relief as grids.
 #include "libvdbsynth/pipeline/relief/relief_extract_steps.h"
 #include "libvdbsynth/vdb/coord.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 

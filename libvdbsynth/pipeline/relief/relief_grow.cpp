@@ -8,8 +8,7 @@
 #include "libvdbsynth/relief/relief_layer.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <cmath>

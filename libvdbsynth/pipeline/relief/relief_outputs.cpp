@@ -10,8 +10,7 @@
 #include "libvdbsynth/pipeline/convert/outputs.h"
 #include "libvdbsynth/relief/relief_layer.h"
 #include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,9 +9,8 @@
 #include "libvdbsynth/pipeline/texture/texture_steps.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/control_grids.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/grid_reader.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>

@@ -5,8 +5,7 @@
 #include "libvdbsynth/pipeline/relief/relief_extract.h"
 #include "libvdbsynth/pipeline/relief/relief_steps.h"
 #include "libvdbsynth/relief/relief_layer.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <cmath>

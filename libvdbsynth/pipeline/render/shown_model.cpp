@@ -4,11 +4,10 @@
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/render/surface_colours.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/read/field_kind.h"
 #include "libvdbsynth/vdb/read/grid_names.h"
 #include "libvdbsynth/vdb/vdb_file.h"
-
-#include <openvdb/openvdb.h>
 
 namespace vdbsynth {
 

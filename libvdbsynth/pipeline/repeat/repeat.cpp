@@ -6,8 +6,7 @@
 #include "libvdbsynth/pipeline/analogy/analogy_steps.h"
 #include "libvdbsynth/pipeline/fill/fill_steps.h"
 #include "libvdbsynth/pipeline/synth/synth_steps.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <cmath>
 #include <string>

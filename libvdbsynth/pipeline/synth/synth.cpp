@@ -9,9 +9,8 @@
 #include "libvdbsynth/vdb/attribute_transfer.h"
 #include "libvdbsynth/vdb/control_grids.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/mask.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include "libvdbsynth/pipeline/synth/synth_steps.h"
 #include "libvdbsynth/vdb/coord.h"
 
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <cmath>
 #include <string>

@@ -7,9 +7,8 @@
 #include "libvdbsynth/grid/islands.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/mask.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>

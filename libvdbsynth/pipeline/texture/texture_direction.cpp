@@ -4,9 +4,8 @@
 #include "libvdbsynth/pipeline/texture/texture_steps.h"
 #include "libvdbsynth/points/surface_sites.h"
 #include "libvdbsynth/surface/curvature_direction.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/vdb_file.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>

@@ -4,9 +4,8 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/points/site_regions.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/grid_reader.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,6 @@
 
 #include "libvdbsynth/vdb/vdb_file.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tree/LeafManager.h>
 
 #include <algorithm>

@@ -3,9 +3,8 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/level_set.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>

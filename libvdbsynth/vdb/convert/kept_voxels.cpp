@@ -2,8 +2,8 @@
 
 #include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/Morphology.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 openvdb::MaskGrid::Ptr changedVoxels(const BrickField& before, const BrickField& after, const Index3& corner,
                                      float limit) {
-    const auto changed = openvdb::MaskGrid::create();
+    const auto changed = emptyGrid<openvdb::MaskGrid>();
     auto accessor = changed->getAccessor();
     forEachVoxel(after.box(), [&](const Index3& p) {
         const float now = std::clamp(after.inside(p), -limit, limit);

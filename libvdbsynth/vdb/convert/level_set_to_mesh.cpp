@@ -4,8 +4,7 @@
 #include "libvdbsynth/geometry/local_points.h"
 #include "libvdbsynth/vdb/convert/zero_level.h"
 #include "libvdbsynth/vdb/coord.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <optional>

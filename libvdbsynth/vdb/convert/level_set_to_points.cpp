@@ -9,8 +9,7 @@
 #include "libvdbsynth/vdb/convert/trilinear.h"
 #include "libvdbsynth/vdb/convert/zero_level.h"
 #include "libvdbsynth/vdb/coord.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <cmath>

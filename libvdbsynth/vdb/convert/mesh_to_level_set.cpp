@@ -12,8 +12,8 @@
 #include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/solid/mesh_parts.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tree/LeafManager.h>
 

@@ -2,9 +2,9 @@
 // so the greater or lesser of two distances is the distance to both.
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set_steps.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/wall.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/Composite.h>
 
 #include <algorithm>

@@ -5,8 +5,7 @@
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set_steps.h"
 #include "libvdbsynth/vdb/convert/surface_kept.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <algorithm>
 #include <string>

@@ -8,10 +8,10 @@
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set_steps.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/level_set.h"
 #include "libvdbsynth/vdb/wall.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 
 #include <algorithm>

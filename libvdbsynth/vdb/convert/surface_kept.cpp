@@ -8,9 +8,8 @@
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/level_set.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <limits>

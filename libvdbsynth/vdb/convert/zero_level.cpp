@@ -2,10 +2,10 @@
 
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/vdb/convert/trilinear.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/level_set.h"
 #include "libvdbsynth/vdb/wall.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/VolumeToMesh.h>
 
 #include <algorithm>

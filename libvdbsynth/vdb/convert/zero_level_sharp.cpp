@@ -6,9 +6,9 @@
 #include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/vdb/convert/zero_level.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/level_set.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tree/LeafManager.h>
 
 #include <algorithm>

@@ -1,8 +1,7 @@
 #include "libvdbsynth/vdb/read/grid_names.h"
 
 #include "libvdbsynth/base/printable_text.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <map>
 

@@ -1,7 +1,6 @@
 #pragma once
 #include "libvdbsynth/base/run_context.h"
-
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <cstdint>
 #include <vector>

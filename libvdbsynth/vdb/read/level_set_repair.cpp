@@ -2,13 +2,13 @@
 
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/base/parallel.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/level_set.h"
 #include "libvdbsynth/vdb/read/band_contacts.h"
 #include "libvdbsynth/vdb/read/field_kind.h"
 #include "libvdbsynth/vdb/read/inactive_regions.h"
 #include "libvdbsynth/vdb/read/level_set_repair_steps.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/Prune.h>
 
 #include <algorithm>

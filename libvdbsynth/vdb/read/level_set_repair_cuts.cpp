@@ -1,7 +1,6 @@
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/read/level_set_repair_steps.h"
 #include "libvdbsynth/vdb/read/neighbour_pairs.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 #pragma once
-#include <openvdb/openvdb.h>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 // Pairs of neighbouring voxels of which at least one is inactive, as signs and bands are checked by them.
 namespace vdbsynth {

@@ -1,6 +1,5 @@
 #include "libvdbsynth/pipeline/analogy/analogy.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <catch2/catch.hpp>
 
@@ -11,6 +10,7 @@
 #include "libvdbsynth/pipeline/make/make.h"
 #include "libvdbsynth/pipeline/repeat/repeat.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/source_map_grids.h"
 #include "tests/support/makers.h"
 

@@ -1,6 +1,6 @@
 #include "libvdbsynth/pipeline/analogy/filter_analogy.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/Filter.h>
 #include <openvdb/tools/Morphology.h>
 #include <catch2/catch.hpp>

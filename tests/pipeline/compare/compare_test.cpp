@@ -1,6 +1,5 @@
 #include "libvdbsynth/pipeline/compare/compare.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <catch2/catch.hpp>
 
@@ -9,6 +8,7 @@
 #include "libvdbsynth/pipeline/crop/crop.h"
 #include "libvdbsynth/pipeline/make/make.h"
 #include "libvdbsynth/pipeline/synth/synth.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/makers.h"
 
 #include <atomic>

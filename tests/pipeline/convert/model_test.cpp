@@ -1,9 +1,9 @@
 #include "libvdbsynth/pipeline/convert/model.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include "libvdbsynth/io/mesh_file.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/makers.h"
 #include "tests/support/raster_files.h"
 #include "tests/support/temporary_folder.h"

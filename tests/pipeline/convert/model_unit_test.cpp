@@ -1,10 +1,10 @@
 #include "libvdbsynth/pipeline/convert/model_unit.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <catch2/catch.hpp>
 
 #include "libvdbsynth/pipeline/convert/model.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,12 +1,12 @@
 #include "libvdbsynth/pipeline/convert/model_wall.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include <algorithm>
 
 #include "libvdbsynth/pipeline/convert/model.h"
 #include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/makers.h"
 #include "tests/support/said.h"
 

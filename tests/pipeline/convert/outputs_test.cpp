@@ -1,6 +1,5 @@
 #include "libvdbsynth/pipeline/convert/outputs.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/Interpolation.h>
 #include <catch2/catch.hpp>
 
@@ -13,6 +12,7 @@
 #include "libvdbsynth/pipeline/convert/model.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/makers.h"
 #include "tests/support/said.h"
 #include "tests/support/temporary_folder.h"

@@ -1,6 +1,5 @@
 #include "libvdbsynth/pipeline/convert/volume_output.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <catch2/catch.hpp>
 
@@ -9,6 +8,7 @@
 #include "libvdbsynth/io/raster_file.h"
 #include "libvdbsynth/pipeline/convert/model.h"
 #include "libvdbsynth/pipeline/convert/model_unit.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/makers.h"
 #include "tests/support/said.h"
 #include "tests/support/temporary_folder.h"

@@ -1,9 +1,9 @@
 #include "libvdbsynth/pipeline/crop/crop.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include "libvdbsynth/pipeline/make/make.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/makers.h"
 
 using namespace vdbsynth;

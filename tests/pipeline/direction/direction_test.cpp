@@ -1,7 +1,7 @@
 #include "libvdbsynth/pipeline/direction/direction.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 #include "libvdbsynth/pipeline/direction/place_directions.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <cmath>
 

@@ -1,6 +1,5 @@
 #include "libvdbsynth/pipeline/fill/fill.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <catch2/catch.hpp>
 
@@ -10,6 +9,7 @@
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/source_map_grids.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "tests/support/makers.h"

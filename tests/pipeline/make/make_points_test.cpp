@@ -1,12 +1,12 @@
 #include "libvdbsynth/pipeline/make/make_points.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include <cstring>
 
 #include "libvdbsynth/geometry/point_neighbours.h"
 #include "libvdbsynth/procedural/kinds.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/makers.h"
 
 using namespace vdbsynth;

@@ -1,6 +1,6 @@
 #include "libvdbsynth/pipeline/make/make.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include "tests/support/makers.h"

@@ -1,10 +1,10 @@
 #include "libvdbsynth/pipeline/match/match.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <catch2/catch.hpp>
 
 #include "libvdbsynth/pipeline/make/make.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/mask.h"
 #include "tests/support/makers.h"
 

@@ -1,10 +1,10 @@
 #include "libvdbsynth/pipeline/patch/patch_hole.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/contexts.h"
 #include "tests/support/patch_shapes.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <catch2/catch.hpp>
 

@@ -1,8 +1,8 @@
 #include "libvdbsynth/pipeline/patch/patch_map.h"
 
 #include "libvdbsynth/pipeline/patch/patch.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include <cstring>

@@ -1,10 +1,10 @@
 #include "libvdbsynth/pipeline/patch/patch_onto_map.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/contexts.h"
 #include "tests/support/patch_sources.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <catch2/catch.hpp>
 

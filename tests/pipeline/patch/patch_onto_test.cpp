@@ -1,11 +1,11 @@
 #include "libvdbsynth/pipeline/patch/patch_onto.h"
 
 #include "libvdbsynth/base/error.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/contexts.h"
 #include "tests/support/patch_sources.h"
 #include "tests/support/said.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
 #include <catch2/catch.hpp>

@@ -1,8 +1,8 @@
 #include "libvdbsynth/pipeline/patch/patch_outputs.h"
 
 #include "libvdbsynth/pipeline/patch/patch.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/Interpolation.h>
 #include <catch2/catch.hpp>
 

@@ -3,9 +3,9 @@
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/textured_mesh.h"
 #include "libvdbsynth/pipeline/make/make.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include <limits>

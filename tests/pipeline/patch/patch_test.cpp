@@ -1,8 +1,8 @@
 #include "libvdbsynth/pipeline/patch/patch.h"
 
 #include "libvdbsynth/math/trigonometry.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include "tests/support/makers.h"

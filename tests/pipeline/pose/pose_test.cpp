@@ -5,11 +5,10 @@
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/contexts.h"
 #include "tests/support/makers.h"
 #include "tests/support/said.h"
-
-#include <openvdb/openvdb.h>
 
 #include <catch2/catch.hpp>
 

@@ -1,11 +1,11 @@
 #include "libvdbsynth/pipeline/relief/relief_bake.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <catch2/catch.hpp>
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/raster_file.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/temporary_folder.h"
 
 #include <cmath>

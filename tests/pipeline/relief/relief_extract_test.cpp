@@ -1,11 +1,10 @@
 #include "libvdbsynth/pipeline/relief/relief_extract.h"
 
 #include "libvdbsynth/math/trigonometry.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/contexts.h"
 #include "tests/support/level_sets.h"
 #include "tests/support/said.h"
-
-#include <openvdb/openvdb.h>
 
 #include <catch2/catch.hpp>
 

@@ -3,11 +3,10 @@
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/raster_file.h"
 #include "libvdbsynth/math/trigonometry.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/level_sets.h"
 #include "tests/support/said.h"
 #include "tests/support/temporary_folder.h"
-
-#include <openvdb/openvdb.h>
 
 #include <catch2/catch.hpp>
 

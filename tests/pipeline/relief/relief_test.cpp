@@ -1,6 +1,5 @@
 #include "libvdbsynth/pipeline/relief/relief.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <catch2/catch.hpp>
 
@@ -8,6 +7,7 @@
 #include "libvdbsynth/math/trigonometry.h"
 #include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/contexts.h"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 #include "libvdbsynth/pipeline/repeat/repeat.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include "libvdbsynth/pipeline/analogy/analogy.h"
@@ -10,6 +9,7 @@
 #include "libvdbsynth/pipeline/synth/synth.h"
 #include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/source_map_grids.h"
 #include "libvdbsynth/vdb/vdb_file.h"

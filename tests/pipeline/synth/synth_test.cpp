@@ -1,6 +1,5 @@
 #include "libvdbsynth/pipeline/synth/synth.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetPlatonic.h>
 #include <catch2/catch.hpp>
 
@@ -11,6 +10,7 @@
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/mask.h"
 #include "libvdbsynth/vdb/source_map_grids.h"
 #include "libvdbsynth/vdb/vdb_file.h"

@@ -1,10 +1,10 @@
 #include "libvdbsynth/pipeline/texture/texture_outputs.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/point_file.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/level_sets.h"
 #include "tests/support/said.h"
 #include "tests/support/temporary_folder.h"

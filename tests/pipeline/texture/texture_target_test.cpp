@@ -1,12 +1,12 @@
 #include "libvdbsynth/pipeline/texture/texture_target.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include <atomic>
 #include <cmath>
 
 #include "libvdbsynth/io/mesh_file.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "tests/support/level_sets.h"
 #include "tests/support/makers.h"

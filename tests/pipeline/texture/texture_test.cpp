@@ -1,6 +1,6 @@
 #include "libvdbsynth/pipeline/texture/texture.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include <cstring>

@@ -1,10 +1,9 @@
 #include <catch2/catch.hpp>
 
-#include <openvdb/openvdb.h>
-
 #include "libvdbsynth/vdb/convert/attribute_grids.h"
 #include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/makers.h"
 
 using namespace vdbsynth;

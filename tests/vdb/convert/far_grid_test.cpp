@@ -1,11 +1,11 @@
 #include "libvdbsynth/vdb/convert/far_grid.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include <cmath>
 
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/level_set.h"
 #include "tests/support/makers.h"
 

@@ -1,10 +1,10 @@
 #include "libvdbsynth/vdb/convert/kept_voxels.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <catch2/catch.hpp>
 
 #include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/redistance.h"
 #include "tests/support/makers.h"
 

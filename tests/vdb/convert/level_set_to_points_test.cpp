@@ -1,9 +1,9 @@
 #include "libvdbsynth/vdb/convert/level_set_to_points.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/level_sets.h"
 #include "tests/support/makers.h"
 

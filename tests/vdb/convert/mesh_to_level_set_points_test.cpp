@@ -1,4 +1,3 @@
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -6,6 +5,7 @@
 
 #include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/makers.h"
 
 using namespace vdbsynth;

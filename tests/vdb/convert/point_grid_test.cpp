@@ -1,12 +1,12 @@
 #include "libvdbsynth/vdb/convert/point_grid.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/points/PointConversion.h>
 #include <openvdb/points/PointCount.h>
 #include <catch2/catch.hpp>
 
 #include <map>
 
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "tests/support/makers.h"
 #include "tests/support/point_shapes.h"

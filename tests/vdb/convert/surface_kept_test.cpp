@@ -1,12 +1,12 @@
 #include "libvdbsynth/vdb/convert/surface_kept.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include <string>
 #include <vector>
 
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/makers.h"
 
 using namespace vdbsynth;

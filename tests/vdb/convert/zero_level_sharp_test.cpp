@@ -1,7 +1,5 @@
 #include <catch2/catch.hpp>
 
-#include <openvdb/openvdb.h>
-
 #include <cmath>
 #include <map>
 
@@ -10,6 +8,7 @@
 #include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/makers.h"
 
 using namespace vdbsynth;

@@ -1,6 +1,5 @@
 #include "libvdbsynth/vdb/convert/zero_level.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include "libvdbsynth/distance/zero_level.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/coord.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 
 using namespace vdbsynth;
 

@@ -1,6 +1,6 @@
 #include "libvdbsynth/vdb/read/band_contacts.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include "tests/vdb/read/fields.h"

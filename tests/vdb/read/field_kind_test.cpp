@@ -1,9 +1,9 @@
 #include "libvdbsynth/vdb/read/field_kind.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include "libvdbsynth/base/random.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/vdb/read/fields.h"
 
 using namespace vdbsynth;

@@ -1,7 +1,6 @@
 #pragma once
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/vdb_fwd.h"
-
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 #include <functional>

@@ -1,6 +1,6 @@
 #include "libvdbsynth/vdb/read/grid_names.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 using namespace vdbsynth;

@@ -1,10 +1,10 @@
 // Level sets as clip tools leave them: the band ends at a box, and nothing says what lies beyond.
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/Clip.h>
 #include <catch2/catch.hpp>
 
 #include "libvdbsynth/geometry/mesh.h"
 #include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/read/level_set_repair.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "tests/support/makers.h"

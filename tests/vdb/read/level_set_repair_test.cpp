@@ -1,8 +1,8 @@
 #include "libvdbsynth/vdb/read/level_set_repair.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/level_set.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "tests/support/makers.h"

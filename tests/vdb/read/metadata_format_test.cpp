@@ -1,10 +1,10 @@
 #include "libvdbsynth/vdb/read/metadata_format.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include <vector>
 
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "tests/support/makers.h"
 #include "tests/support/temporary_folder.h"

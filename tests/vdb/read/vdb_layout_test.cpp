@@ -1,12 +1,12 @@
 #include "libvdbsynth/vdb/read/vdb_layout.h"
 
-#include <openvdb/openvdb.h>
 #include <catch2/catch.hpp>
 
 #include <cstring>
 #include <sstream>
 
 #include "libvdbsynth/base/random.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "tests/support/makers.h"
 #include "tests/support/temporary_folder.h"

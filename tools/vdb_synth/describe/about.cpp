@@ -14,10 +14,10 @@ namespace {
     throw Error(ErrorCode::InvalidOption, text);
 }
 
-std::string nearestCommand(const std::string& name) {
+std::vector<std::string> commandNames() {
     std::vector<std::string> names;
     for (const Command* command : commands()) names.push_back(command->name);
-    return nearestName(name, names);
+    return names;
 }
 
 std::string help(const std::vector<std::string>& words) {
@@ -29,9 +29,7 @@ std::string help(const std::vector<std::string>& words) {
         } else if (command || word.empty() || word[0] == '-') {
             refuse("help " + word + ": must be help [--man] [COMMAND]");
         } else if (command = findCommand(word); !command) {
-            const std::string near = nearestCommand(word);
-            refuse("help " + word + ": unknown command" +
-                   (near.empty() ? "; see vdb_synth --help" : "; did you mean " + near + "?"));
+            refuse("help " + notACommand(word, commandNames()));
         }
     }
     if (manual) return command ? manualPage(*command) : programManual();

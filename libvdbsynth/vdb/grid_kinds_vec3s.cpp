@@ -1,0 +1,4 @@
+#include "libvdbsynth/vdb/grid_kinds.h"
+
+template class openvdb::tree::Tree<openvdb::Vec3STree::RootNodeType>;
+template class openvdb::Grid<openvdb::Vec3STree>;

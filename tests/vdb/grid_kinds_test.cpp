@@ -38,3 +38,24 @@ TEST_CASE("kinds of grid: scalars, vectors, those with a mean, attributes and ma
           Names{"float", "double", "int32", "int64", "bool", "vec3i", "vec3s", "vec3d"});
     CHECK(taken<MaskGrids>() == Names{"float", "int32", "bool", "mask"});
 }
+
+using namespace vdbsynth;
+
+TEST_CASE("emptyGrid: a grid of the kind asked for, like one that create makes", "[vdb]") {
+    const openvdb::Vec3IGrid::Ptr vectors = emptyGrid<openvdb::Vec3IGrid>();
+    REQUIRE(vectors);
+    CHECK(vectors->background() == openvdb::Vec3i(0));
+    CHECK(anyKind(*vectors).activeVoxelCount() == 0);
+    CHECK(vectors->metaCount() == 0);
+    const openvdb::MaskGrid::Ptr mask = emptyGrid<openvdb::MaskGrid>();
+    REQUIRE(mask);
+    CHECK_FALSE(mask->background());
+    REQUIRE(emptyGrid<openvdb::BoolGrid>());
+}
+
+TEST_CASE("anyKind: the same grid", "[vdb]") {
+    const openvdb::FloatGrid::Ptr grid = openvdb::FloatGrid::create(2.f);
+    CHECK(&anyKind(*grid) == grid.get());
+    const openvdb::GridBase::Ptr copy = anyKind(*grid).copyGridWithNewTree();
+    CHECK(openvdb::gridPtrCast<openvdb::FloatGrid>(copy)->background() == 2.f);
+}

@@ -173,7 +173,8 @@ void defineMakers(LevelSetClass& levelSet) {
                         "LevelSet.from_volume",
                         "The solid of a volume of any values [x, y, z]: where the value is above "
                         "`threshold`, below `below`, one of\n"
-                        "`labels`, or the larger of only two values. The array's box is the recorded domain. NaN is outside.")
+                        "`labels`, or the larger of only two values. The array's box is the recorded domain. "
+                        "NaN is outside.")
                         .c_str())
         .def_static(
             "from_mesh",

@@ -170,9 +170,10 @@ TEST_CASE("makeAnalogyModel: thin parts bear a share of the texture, none of it,
 
 TEST_CASE("makeAnalogyModel: a draft has the texture, repeats from its map, same bits for any threads",
           "[pipeline]") {
-    const ModelPair pair = pairOf("grooves", 96);
-    const LevelSet target = solidOf(IndexBox{{-50, -50, -50}, {50, 50, 50}}, false,
-                                    [](const Vec3d& p) { return length(p) - 40; });
+    constexpr double kRadius = 28;
+    const ModelPair pair = pairOf("grooves", 72);
+    const LevelSet target = solidOf(IndexBox{{-38, -38, -38}, {38, 38, 38}}, false,
+                                    [](const Vec3d& p) { return length(p) - kRadius; });
     AnalogyOptions options;
     options.direction = direction("around:z");
     const AnalogyResult full = applied(pair, target, options);
@@ -181,7 +182,8 @@ TEST_CASE("makeAnalogyModel: a draft has the texture, repeats from its map, same
     one.threads = 1;
     const AnalogyResult draft = applied(pair, target, options), again = applied(pair, target, options, one);
     CHECK(levelSetHash(*draft.model.grid) == levelSetHash(*again.model.grid));
-    const double relief = reliefOnBall(*draft.model.grid, 40), wanted = reliefOnBall(*full.model.grid, 40);
+    const double relief = reliefOnBall(*draft.model.grid, kRadius),
+                 wanted = reliefOnBall(*full.model.grid, kRadius);
     CHECK(relief == Approx(wanted).epsilon(0.2));
     REQUIRE(!draft.levels.empty());
     CHECK(draft.levels.back().voxels < full.levels.back().voxels / 4);

@@ -125,7 +125,7 @@ TEST_CASE("fillHoles: a notch in a slab becomes flat, and all else keeps its bit
           levelSetHash(*result.model.grid));
 }
 
-TEST_CASE("fillHoles: a hole in other voxels and of another band; beyond three voxels all bits stay",
+TEST_CASE("fillHoles: a hole in other voxels and of another band, beyond three voxels all bits stay",
           "[pipeline][property]") {
     const IndexBox domain{{0, 0, 0}, {95, 95, 39}};
     const auto slab = [](const Index3& p) { return float(p.z) - 19.7f; };

@@ -10,6 +10,7 @@
 #include "libvdbsynth/vdb/vdb_file.h"
 #include "libvdbsynth/vdb/wall.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace vdbsynth {
@@ -87,6 +88,21 @@ IndexBox boxIn(const openvdb::FloatGrid& like, const openvdb::GridBase& mask) {
     return in;
 }
 
+// Where a model has voxels to ask a mask about: its active ones, and its domain if it names one. Empty:
+// unknown.
+IndexBox extentOf(const openvdb::FloatGrid& like) {
+    IndexBox active, domain;
+    if (like.activeVoxelCount() > 0) active = fromBBox(like.evalActiveVoxelBoundingBox());
+    const auto recorded = like.getMetadata<openvdb::StringMetadata>(kDomainKey);
+    if (!recorded || !parseBox(recorded->value(), domain)) return active;
+    if (active.empty()) return domain;
+    for (int axis = 0; axis < 3; ++axis) {
+        domain.min[axis] = std::min(domain.min[axis], active.min[axis]);
+        domain.max[axis] = std::max(domain.max[axis], active.max[axis]);
+    }
+    return domain;
+}
+
 }  // namespace
 
 GridConstPtr maskOn(const GridConstPtr& mask, const openvdb::FloatGrid& like, const std::string& what,
@@ -96,7 +112,11 @@ GridConstPtr maskOn(const GridConstPtr& mask, const openvdb::FloatGrid& like, co
     const openvdb::GridBase& read = solid ? *solid : *mask;
     scalarReader(read, GridSampling::Linear,
                  what);  // a grid of a wrong kind is refused here, not in a worker
-    const IndexBox box = boxIn(like, read);
+    const IndexBox whole = boxIn(like, read), extent = extentOf(like),
+                   box = extent.empty() ? whole : whole.intersection(extent);
+    if (box.empty())
+        throw Error(ErrorCode::EmptyInput, what + ": lies beside the model, at voxels " + boxText(whole) +
+                                               " of the model's, which has " + boxText(extent));
     requireMemory(ctx, double(box.volume()) / 8, what + ", a mask of " + boxText(box),
                   "use larger voxels or a smaller mask");
     const auto reader = [&] {

@@ -24,10 +24,11 @@ FloatGridConstPtr solidOfMask(const openvdb::GridBase& mask, const std::string& 
 
 /// A mask as a grid that is active where it holds, in its model's voxels: a solid is active where the centre
 /// of a voxel lies inside it, whatever its own voxels and band; any other grid where its voxel nearest to the
-/// centre is active. The same grid if it has these voxels and is no solid.
+/// centre is active; of the mask only what lies in the model's active box or recorded domain. The same grid
+/// if it has these voxels and is no solid.
 /// @throw Error as solidOfMask; BadData (a kind of grid that cannot be a mask), EmptyInput (it holds
-/// nowhere), Memory   @par Cost O(voxels of the mask's box)   @par Repeats same bits for any number of
-/// threads
+/// nowhere, or lies beside the model), Memory   @par Cost O(voxels that mask and model share)   @par Repeats
+/// same bits for any number of threads
 GridConstPtr maskOn(const GridConstPtr& mask, const openvdb::FloatGrid& like, const std::string& what,
                     const RunContext& ctx = {});
 

@@ -5,6 +5,7 @@
 
 #include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/grid_kinds.h"
 #include "tests/support/makers.h"
 
@@ -51,6 +52,19 @@ TEST_CASE("maskOn: a solid of any voxels and band is active where it is inside, 
     const auto dot =
         openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(0.3f, {0.5f, 0.5f, 0.5f}, 0.1f, 3.f);
     CHECK(test::thrownBy([&] { maskOn(dot, *like, "`mask`"); }).code == int(ErrorCode::EmptyInput));
+}
+
+TEST_CASE("maskOn: of a mask far larger than the model only what both share is read", "[vdb][error]") {
+    openvdb::initialize();
+    const FloatGridPtr like =
+        openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(4.f, {0, 0, 0}, 1.f, 3.f);
+    // A million voxels of the model a side.
+    const auto large = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(5e5f, {0, 0, 0}, 2e4f, 3.f);
+    CHECK(fromBBox(like->evalActiveVoxelBoundingBox()) == activeBox(*maskOn(large, *like, "`mask`")));
+    const auto beside = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(4.f, {50, 0, 0}, 0.7f, 3.f);
+    const test::Thrown thrown = test::thrownBy([&] { maskOn(beside, *like, "`mask`"); });
+    CHECK(thrown.code == int(ErrorCode::EmptyInput));
+    CHECK(test::contains(thrown.message, "lies beside the model"));
 }
 
 TEST_CASE("maskOn: other grids are active where their nearest voxel is", "[vdb][oracle]") {

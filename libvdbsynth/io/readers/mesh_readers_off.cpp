@@ -38,7 +38,7 @@ Keyword readKeyword(TextScanner scanner) {
         scanner.fail("not an OFF file: it must begin with OFF");
     // In a word of capitals, a small n is another thing than N.
     std::string prefix = upper.substr(0, at);
-    if (word.find("nOFF") != std::string_view::npos) prefix.back() = 'n';
+    if (at > 0 && word[at - 1] == 'n') prefix.back() = 'n';
     return {prefix, begin + at + 3, false};
 }
 

@@ -3,6 +3,7 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/parallel.h"
 #include "libvdbsynth/vdb/bricks.h"
+#include "libvdbsynth/vdb/coord.h"
 #include "libvdbsynth/vdb/grid_kinds.h"
 
 #include <openvdb/tools/Clip.h>
@@ -33,18 +34,25 @@ GridPtr clipped(const GridPtr& grid, const openvdb::FloatGrid& model, const Inde
     return result;
 }
 
+Error nothingIn(const IndexBox& box, const LevelSet& model) {
+    return Error(
+        ErrorCode::EmptyInput,
+        "`box` " + boxText(box) + ": no surface in it; the model's domain is " + boxText(model.domain));
+}
+
 LevelSet cropped(const LevelSet& model, const IndexBox& box, const RunContext& ctx) {
-    requireMemory(ctx, double(box.volume()) * 8.0 / 512, "a box of " + boxText(box), "use a smaller `box`");
     const double voxel = voxelSizeOf(*model.grid);
     const float band = std::max(1.5f, std::min(kHalfWidth, float(halfWidthOf(*model.grid))));
-    const BrickField field = gatherBricks(*model.grid, box, float(1 / voxel), band, ctx);
+    // Beyond the active voxels there is nothing to cut, however large the box.
+    const IndexBox within = box.intersection(fromBBox(model.grid->evalActiveVoxelBoundingBox()).expanded(8));
+    if (within.empty()) throw nothingIn(box, model);
+    requireMemory(ctx, double(within.volume()) * 8.0 / 512, "a box of " + boxText(within),
+                  "use a smaller `box`");
+    const BrickField field = gatherBricks(*model.grid, within, float(1 / voxel), band, ctx);
     const BrickField closed = closeField(field, field.box(), kAllCut, band, ctx);
-    FloatGridPtr grid = scatterBricks(closed, box.min, float(voxel), band, ctx);
+    FloatGridPtr grid = scatterBricks(closed, within.min, float(voxel), band, ctx);
     grid->setTransform(model.grid->transform().copy());
-    if (grid->activeVoxelCount() == 0)
-        throw Error(
-            ErrorCode::EmptyInput,
-            "`box` " + boxText(box) + ": no surface in it; the model's domain is " + boxText(model.domain));
+    if (grid->activeVoxelCount() == 0) throw nothingIn(box, model);
     LevelSet result;
     result.grid = grid;
     result.domain = box;

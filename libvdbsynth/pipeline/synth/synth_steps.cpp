@@ -173,9 +173,11 @@ SynthPlan planSynthesis(const LevelSets& exemplars, const SynthOptions& options,
     SynthPlan plan;
     const LevelSet& exemplar = *exemplars.front();
     MappedExemplar first;
-    first.domain = options.exemplarBox    ? *options.exemplarBox
-                   : options.exemplarMask ? activeBox(*options.exemplarMask)
-                                          : exemplar.domain;
+    first.domain = options.exemplarBox ? *options.exemplarBox : exemplar.domain;
+    if (options.exemplarMask && !options.exemplarBox) {
+        const IndexBox masked = activeBox(*options.exemplarMask), shared = masked.intersection(first.domain);
+        first.domain = shared.empty() ? masked : shared;
+    }
     first.box = first.domain;
     bool recorded = options.exemplarBox || options.exemplarMask || exemplar.domainRecorded;
     for (std::size_t e = 1; e < exemplars.size(); ++e) recorded = recorded && exemplars[e]->domainRecorded;

@@ -89,6 +89,7 @@ TEST_CASE("readOff: errors name what is wrong", "[io][error]") {
         {"HOFF\n", "not an OFF file"},
         {"OFFSET 1 2\n", "not an OFF file"},
         {"ply\n", "not an OFF file"},
+        {"OFF9999999999999nOFF 1 1", "is not a whole number"},
         {"\x01\x02\xFFxyz", "not an OFF file"},
         {"4OFF\n1 0 0\n", "4-dimensional"},
         {"C4nOFF 3\n1 0 0\n", "4-dimensional"},

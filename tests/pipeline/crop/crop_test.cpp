@@ -23,6 +23,11 @@ TEST_CASE("cropModel: the inside is unchanged, the box is recorded and capped", 
         for (int y = 12; y < 36; ++y)
             for (int z = 10; z < 26; ++z) REQUIRE(a.getValue({x, y, z}) == b.getValue({x, y, z}));
     CHECK(box.contains(solidBox(*part.grid, "part")));
+    // A box without bound costs no more than the model.
+    const IndexBox all{{-1000000, -1000000, -1000000}, {1000000, 1000000, 1000000}};
+    const LevelSet whole = cropModel(model, all);
+    CHECK(whole.domain == all);
+    CHECK(solidBox(*whole.grid, "whole") == solidBox(*model.grid, "model"));
     const test::Thrown thrown = test::thrownBy([&] { cropModel(model, IndexBox::cube({500, 0, 0}, 9)); });
     CHECK(thrown.code == int(ErrorCode::EmptyInput));
     CHECK(test::contains(thrown.message, "no surface in it; the model's domain is 0,0,0,47,47,47"));

@@ -33,12 +33,14 @@ TEST_CASE("parseJobText: what is refused", "[tools][error]") {
     CHECK(test::contains(refusalOf(std::string(100000, '['), false), "nested too deeply"));
     CHECK(test::contains(refusalOf("a: [1\nb: 2", true), "j: no valid YAML: at line"));
     CHECK(test::contains(refusalOf("a: 1\na: 2", true), "line 2: \"a\" stands twice"));
-    CHECK(test::contains(refusalOf("a: 1\n---\nb: 2", true), "2 documents"));
+    CHECK(test::contains(refusalOf("a: 1\n---\nb: 2", true), "several documents"));
     CHECK(test::contains(refusalOf("a: &x {b: 1}\nc:\n  <<: *x", true), "merged keys"));
     CHECK(test::contains(refusalOf("[a, b]: 1", true), "a key must be a word"));
     CHECK_FALSE(refusalOf(std::string(5000, '['), true).empty());
     CHECK_FALSE(refusalOf("a: *x", true).empty());
-    CHECK(test::contains(refusalOf("", true), "0 documents"));
+    CHECK(test::contains(refusalOf(",", true),
+                         "a comma or bracket too many"));  // yaml-cpp: documents without end
+    CHECK(test::contains(refusalOf("", true), "holds nothing"));
     std::string deep;
     for (int n = 0; n < 70; ++n) deep += "[";
     CHECK(test::contains(refusalOf(deep + std::string(70, ']'), true), "nested too deeply"));

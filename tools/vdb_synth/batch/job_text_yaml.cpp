@@ -3,7 +3,10 @@
 
 #include "libvdbsynth/base/error.h"
 
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
+
+#include <sstream>
 
 namespace vdbsynth::cli::batch {
 namespace {
@@ -65,14 +68,60 @@ private:
     std::size_t mValues = 0;
 };
 
+// Parses without keeping anything. A damaged file can make yaml-cpp give values without end, and it would
+// keep them all.
+class Count : public YAML::EventHandler {
+public:
+    explicit Count(const std::string& path) : mPath(path) {}
+
+    void OnDocumentStart(const YAML::Mark&) override {
+        if (++mDocuments > 1)
+            throw Error(
+                ErrorCode::BadData,
+                mPath +
+                    ": holds several documents, or a comma or bracket too many; a job file is one document");
+    }
+    void OnDocumentEnd() override {}
+    void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { value(mark); }
+    void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { value(mark); }
+    void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t, const std::string&) override {
+        value(mark);
+    }
+    void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                         YAML::EmitterStyle::value) override {
+        value(mark);
+    }
+    void OnSequenceEnd() override {}
+    void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                    YAML::EmitterStyle::value) override {
+        value(mark);
+    }
+    void OnMapEnd() override {}
+
+private:
+    void value(const YAML::Mark& mark) {
+        if (++mValues > kMostValues)
+            throw Error(ErrorCode::BadData,
+                        mPath + ": line " + std::to_string(mark.line + 1) +
+                            ": more than a million values, or quotes and brackets that do not match");
+    }
+
+    const std::string& mPath;
+    std::size_t mDocuments = 0, mValues = 0;
+};
+
 }  // namespace
 
 Json parseYaml(const std::string& path, const std::string& text) {
     try {
+        std::istringstream stream(text);
+        YAML::Parser parser(stream);
+        Count count(path);
+        while (parser.HandleNextDocument(count)) {
+        }
         const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-        if (documents.size() != 1)
-            throw Error(ErrorCode::BadData, path + ": holds " + std::to_string(documents.size()) +
-                                                " documents; a job file is one");
+        if (documents.empty())
+            throw Error(ErrorCode::BadData, path + ": holds nothing; a job file has \"jobs\"");
         return Converter(path).convert(documents.front(), 0);
     } catch (const YAML::Exception& error) {
         const std::string place = error.mark.is_null()

@@ -82,8 +82,11 @@ SynthOptions parseOptions(const Arguments& arguments) {
     options.method = methodOf(arguments);
     options.indexCache = indexFolder(arguments);
     options.longestRun = arguments.real("longest-run");
-    if (arguments.has("longest-run") && (options.draft || options.method != SynthesisMethod::Default))
-        throw Error(ErrorCode::InvalidOption, "--longest-run: needs --method default and no --draft");
+    if (options.draft || options.method != SynthesisMethod::Default)
+        for (const char* name : {"longest-run", "direction", "rotation-map", "scale-map", "exemplar-map"})
+            if (arguments.has(name))
+                throw Error(ErrorCode::InvalidOption,
+                            std::string("--") + name + ": needs --method default and no --draft");
     options.halfWidth = float(arguments.real("half-width"));
     return options;
 }

@@ -185,6 +185,7 @@ std::vector<Option> analogyTable() {
                              "axis:x, axis:-z, a vector x,y,z, around:y, radial, a grid of vectors or "
                              "scalars FILE.vdb[:GRID], or strokes (world): .csv rows x,y,z,dx,dy,dz, .json, "
                              ".ply points with normals")
+                            .noting("not with --draft or --method exact")
                             .otherwiseIs("");
                     })
             .butFor(

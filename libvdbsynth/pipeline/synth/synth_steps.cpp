@@ -177,6 +177,10 @@ SynthPlan planSynthesis(const LevelSets& exemplars, const SynthOptions& options,
     if (options.exemplarMask && !options.exemplarBox) {
         const IndexBox masked = activeBox(*options.exemplarMask), shared = masked.intersection(first.domain);
         first.domain = shared.empty() ? masked : shared;
+        if (!(first.domain == exemplar.domain))
+            message(ctx, MessageLevel::Note,
+                    "the exemplar's domain, to which sizes refer, is now the box of `exemplarMask`: " +
+                        boxText(first.domain));
     }
     first.box = first.domain;
     bool recorded = options.exemplarBox || options.exemplarMask || exemplar.domainRecorded;

@@ -38,6 +38,7 @@ TEST_CASE("parseJobText: what is refused", "[tools][error]") {
     CHECK(test::contains(refusalOf("[a, b]: 1", true), "a key must be a word"));
     CHECK_FALSE(refusalOf(std::string(5000, '['), true).empty());
     CHECK_FALSE(refusalOf("a: *x", true).empty());
+    CHECK(test::contains(refusalOf("a: \xFF\n", true), "is not UTF-8"));
     CHECK(test::contains(refusalOf(",", true),
                          "a comma or bracket too many"));  // yaml-cpp: documents without end
     CHECK(test::contains(refusalOf("", true), "holds nothing"));

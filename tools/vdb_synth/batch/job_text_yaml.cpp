@@ -113,6 +113,12 @@ private:
 }  // namespace
 
 Json parseYaml(const std::string& path, const std::string& text) {
+    // Texts of job files are written into JSON later, which holds nothing else.
+    try {
+        (void)Json(text).dump();
+    } catch (const Json::exception&) {
+        throw Error(ErrorCode::BadData, path + ": is not UTF-8; save it as such");
+    }
     try {
         std::istringstream stream(text);
         YAML::Parser parser(stream);

@@ -58,7 +58,7 @@ BANDS = ", ".join(f"{a:g} to {b:g}" for a, b in zip(LONGEST, LONGEST[1:]))
 
 
 def bricks():
-    """Rows of bricks with joints two voxels wide, each brick of its own height: 0 to 1."""
+    """Rows of bricks with mortar two voxels wide, each brick of its own height: 0 to 1."""
     rows, columns = np.mgrid[0:PICTURE, 0:PICTURE]
     row = rows // 8
     column = (columns + 8 * (row % 2)) % PICTURE // 16

@@ -17,6 +17,30 @@ bool isConstant(const float* samples, std::size_t count) {
     return true;
 }
 
+// Copies 1 to 4 samples; a call of memcpy with a size known only here costs several times as much.
+void copyFew(const float* from, int count, float* to) {
+    if (count == 4) {
+        std::memcpy(to, from, 4 * sizeof(float));
+        return;
+    }
+    for (; count >= 2; count -= 2, from += 2, to += 2) std::memcpy(to, from, 2 * sizeof(float));
+    if (count == 1) *to = *from;
+}
+
+constexpr Index3 kFour{4, 4, 4};  // what a cubic polynomial reads at a point
+
+// Calls row(x, y, brick's z, z within the brick, samples from there, out) for the pieces of rows of 4 x 4 x 4
+// samples that lie in one brick each. @param l  from the field's corner
+template <typename Row>
+void forRowsOfFour(const Index3& l, float* out, const Row& row) {
+    const int z = l.z & 7, first = std::min(4, 8 - z);
+    for (int x = l.x; x < l.x + 4; ++x)
+        for (int y = l.y; y < l.y + 4; ++y, out += 4) {
+            row(x, y, l.z >> 3, z, first, out);
+            if (first < 4) row(x, y, (l.z >> 3) + 1, 0, 4 - first, out + first);
+        }
+}
+
 }  // namespace
 
 BrickField::BrickField(const IndexBox& box, float value) : mBox(box) {
@@ -78,6 +102,17 @@ float BrickField::at(const Index3& p) const {
 }
 
 void BrickField::readBox(const Index3& corner, const Index3& size, float* out) const {
+    static_assert(kSide == 8, "forRowsOfFour");
+    if (size == kFour && mBox.contains(corner) && mBox.contains(corner + Index3{3, 3, 3})) {
+        forRowsOfFour(corner - mBox.min, out, [&](int x, int y, int bz, int z, int count, float* to) {
+            const std::size_t brick = brickIndex(x >> 3, y >> 3, bz);
+            if (mSlots[brick] < 0)
+                std::fill_n(to, count, mConstants[brick]);
+            else
+                copyFew(brickRow(brick, x & 7, y & 7) + z, count, to);
+        });
+        return;
+    }
     for (int i = 0; i < size.x; ++i) {
         const int x = std::clamp(corner.x + i, mBox.min.x, mBox.max.x) - mBox.min.x;
         for (int j = 0; j < size.y; ++j) {

@@ -9,6 +9,7 @@
 #include "libvdbsynth/math/lattice.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -20,10 +21,49 @@ namespace {
 struct Reader {
     const BrickField* field = nullptr;
     Vec3f at, x, y, z;
+    std::int32_t group = 0;  // the first reader that reads the same
 
-    float operator()(const Vec3f& offset) const {
-        return sampleCubic(*field, at + x * offset.x + y * offset.y + z * offset.z);
+    Vec3f place(const Vec3f& offset) const { return at + x * offset.x + y * offset.y + z * offset.z; }
+    float operator()(const Vec3f& offset) const { return sampleCubic(*field, place(offset)); }
+    static bool same(const Vec3f& a, const Vec3f& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+    bool readsAs(const Reader& other, const Vec3f& offset) const {
+        constexpr float kSame = 1e-3f;  // [samples]
+        if (field != other.field || !same(x, other.x) || !same(y, other.y) || !same(z, other.z)) return false;
+        const Vec3f apart = other.place(offset) - at;
+        return dot(apart, apart) < kSame * kSame;
     }
+};
+
+// The proposals at a voxel, those of sources that continue each other once.
+class Proposals {
+public:
+    void add(std::int32_t reader, std::int32_t group, const Vec3f& offset, float weight) {
+        for (int i = 0; i < mCount; ++i)
+            if (mAll[i].group == group) {
+                mAll[i].weight += weight;
+                return;
+            }
+        mAll[mCount++] = {reader, group, offset, weight};
+    }
+    template <typename Value>
+    float mean(const Value& valueOf) const {
+        float sum = 0, weights = 0;
+        for (int i = 0; i < mCount; ++i) {
+            sum += mAll[i].weight * valueOf(mAll[i].reader, mAll[i].offset);
+            weights += mAll[i].weight;
+        }
+        return sum / weights;
+    }
+
+private:
+    struct Proposal {
+        std::int32_t reader, group;
+        Vec3f offset;
+        float weight;
+    };
+    static constexpr std::size_t kMost = 64;  // voxels in reach of a position
+    std::array<Proposal, kMost> mAll;
+    int mCount = 0;
 };
 
 Reader readerOf(const Source& source, const ExemplarSamples& samples) {
@@ -65,6 +105,7 @@ public:
           mTable(VoxelTable::of(mapBox, sources.voxels())),
           mReaders(sources.size()) {
         makeReaders(sources, exemplars, ctx);
+        groupReaders();
     }
 
     // A voxel of the result, relative to its box's corner; `value` does not change where there is no source.
@@ -78,22 +119,24 @@ public:
         Vec3f from;
         for (int axis = 0; axis < 3; ++axis)
             from[axis] = float(fine[axis] - voxel[axis] * mFactor) / float(mFactor);
-        float sum = 0, weights = 0;
+        Proposals proposals;
         forEachVoxel(reachOf(from), [&](const Index3& step) {
             const std::int32_t j = mTable.find(voxel + step);
             if (j < 0) return;
             const Vec3f offset = from - Vec3f{float(step.x), float(step.y), float(step.z)};
             const float far = 1 + dot(offset, offset);
             const float weight = taper(offset.x) * taper(offset.y) * taper(offset.z) / (far * far);
-            sum += weight * std::clamp(mReaders[std::size_t(j)](offset), -mLimit, mLimit);
-            weights += weight;
+            proposals.add(j, mReaders[std::size_t(j)].group, offset, weight);
         });
-        value = sum / weights;
+        value = proposals.mean([&](std::int32_t j, const Vec3f& offset) {
+            return std::clamp(mReaders[std::size_t(j)](offset), -mLimit, mLimit);
+        });
     }
 
 private:
     void makeReaders(const ElementSources& sources, const std::vector<ExemplarSamples>& exemplars,
                      const RunContext& ctx);
+    void groupReaders();
 
     IndexBox mBox;
     int mFactor;
@@ -111,6 +154,25 @@ void Gather::makeReaders(const ElementSources& sources, const std::vector<Exempl
             mReaders[i] = readerOf(source, exemplars[std::size_t(source.exemplar)]);
         }
     });
+}
+
+// One after the other, so that a group is the same for any number of threads. All of a group are compared
+// with its first, as small differences between neighbours would add up.
+void Gather::groupReaders() {
+    for (std::int32_t i = 0; i < std::int32_t(mReaders.size()); ++i) {
+        Reader& reader = mReaders[std::size_t(i)];
+        const Index3 voxel = mTable[std::size_t(i)];
+        reader.group = i;
+        for (int axis = 2; axis >= 0 && reader.group == i; --axis) {
+            Index3 before = voxel;
+            --before[axis];
+            const std::int32_t j = mTable.find(before);
+            if (j < 0 || j >= i) continue;
+            const std::int32_t first = mReaders[std::size_t(j)].group;
+            const Vec3f offset = cast<float>(voxel - mTable[std::size_t(first)]);
+            if (reader.readsAs(mReaders[std::size_t(first)], offset)) reader.group = first;
+        }
+    }
 }
 
 }  // namespace

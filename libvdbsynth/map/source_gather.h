@@ -24,9 +24,10 @@ struct ExemplarSamples {
 /// with x, R and s the position, rotation and scale of a source (volume_analogy.h). E is read by a cubic
 /// polynomial (sampleCubic): trilinear values would cut the crests of a texture a few voxels fine. In the
 /// middle of a voxel these are the voxel itself and its 26 neighbours. Sources that continue each other
-/// propose one value; where they do not, the mean has no seam. The voxel's own source has a quarter of the
-/// weight: with less, what is finest of a texture is lost where sources agree but for a part of a voxel. A
-/// field of `factor` times the map's resolution is read at the voxels that make up each voxel of the map.
+/// propose one value, which is read once where their places agree within a thousandth of a sample; where they
+/// do not, the mean has no seam. The voxel's own source has a quarter of the weight: with less, what is
+/// finest of a texture is lost where sources agree but for a part of a voxel. A field of `factor` times the
+/// map's resolution is read at the voxels that make up each voxel of the map.
 /// @param sources    of voxels, each with one source
 /// @param mapBox     the target box in the map's coordinates
 /// @param factor     1..64

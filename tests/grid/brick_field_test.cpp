@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <array>
+
 #include "tests/support/makers.h"
 
 using namespace vdbsynth;
@@ -21,6 +23,20 @@ TEST_CASE("BrickField: reads give what generate was given, clamped to the box ou
                 REQUIRE(field.at({x, y, z}) == value(clamped));
             }
     CHECK(field.inside({18, 8, 22}) == value({18, 8, 22}));
+}
+
+TEST_CASE("BrickField: cubes of four samples are read as single voxels are, wherever they lie",
+          "[grid][property]") {
+    BrickField field = test::ballsField({21, 18, 27}, 5, 3.f);  // with bricks of one value
+    REQUIRE(field.storedBricks() < field.brickCount());
+    field.translate({-7, 40, 3});
+    std::array<float, 64> out;
+    forEachVoxel(field.box().expanded(4), [&](const Index3& corner) {
+        field.readBox(corner, {4, 4, 4}, out.data());
+        std::size_t i = 0;
+        forEachVoxel({corner, corner + Index3{3, 3, 3}},
+                     [&](const Index3& p) { REQUIRE(out[i++] == field.at(p)); });
+    });
 }
 
 TEST_CASE("BrickField: a box that does not begin at 0 keeps its coordinates", "[grid][fast]") {

@@ -4,6 +4,7 @@
 
 #include "libvdbsynth/grid/field_sampling.h"
 #include "libvdbsynth/map/source_map.h"
+#include "libvdbsynth/math/affine.h"
 #include "libvdbsynth/math/trigonometry.h"
 #include "tests/support/makers.h"
 
@@ -66,6 +67,42 @@ TEST_CASE("gatherThroughSources: rotated and scaled sources are read so", "[map]
     const BrickField made = gatherThroughSources(sources, kBox, 1, {{slope, {0, 0, 0}, 1}}, otherwise, 1e6f);
     CHECK(made.at({4, 6, 3}) == Approx(8 + 3 + 100 * (16 - 2)).epsilon(1e-5));
     CHECK(made.at({7, 1, 9}) == Approx(8.5 + 100 * (16 - 3.5)).epsilon(1e-5));
+}
+
+TEST_CASE("gatherThroughSources: the mean counts every voxel around, those that continue each other too",
+          "[map][oracle]") {
+    const auto field = shared(test::fieldFrom({64, 64, 64}, [](const Index3& p) {
+        return float(std::sin(0.3 * p.x) + std::cos(0.25 * p.y) + std::sin(0.2 * p.z));
+    }));
+    // Patches of 3^3 voxels, each rigidly from a place and rotation of its own.
+    const auto sourceOf = [](const Index3& p) {
+        const Index3 in = p - kBox.min, patch{in.x / 3, in.y / 3, in.z / 3};
+        Random random(8, std::uint64_t((patch.x * 64 + patch.y) * 64 + patch.z));
+        Source source;
+        source.rotation = {float(random.uniform(-2, 2)), float(random.uniform(-2, 2)), 0.3f};
+        source.position = Vec3d{random.uniform(20, 40), random.uniform(20, 40), random.uniform(20, 40)} +
+                          transformed(rotationMatrix(-cast<double>(source.rotation)), vec(in - patch * 3));
+        return source;
+    };
+    const BrickField otherwise(IndexBox::fromSize(kBox.size()), 0.f);
+    const BrickField made =
+        gatherThroughSources(sourcesBy(sourceOf), kBox, 1, {{field, {0, 0, 0}, 1}}, otherwise, 6.f);
+    forEachVoxel(IndexBox::fromSize(kBox.size()), [&](const Index3& local) {
+        double sum = 0, weights = 0;
+        const Index3 voxel = kBox.min + local;
+        forEachVoxel(IndexBox{voxel, voxel}.expanded(1).intersection(kBox), [&](const Index3& p) {
+            const Source source = sourceOf(p);
+            const Vec3d offset = vec(voxel - p);
+            const double weight = 1 / ((1 + dot(offset, offset)) * (1 + dot(offset, offset)));
+            sum += weight *
+                   double(sampleCubic(
+                       *field,
+                       cast<float>(source.position +
+                                   transformed(rotationMatrix(-cast<double>(source.rotation)), offset))));
+            weights += weight;
+        });
+        REQUIRE(double(made.inside(local)) == Approx(sum / weights).margin(1e-3));
+    });
 }
 
 TEST_CASE("gatherThroughSources: a finer exemplar is read at the same places", "[map][property]") {

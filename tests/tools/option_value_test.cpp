@@ -98,6 +98,9 @@ TEST_CASE("normalValue: of a path that is read only the file's name is left", "[
 }
 
 TEST_CASE("normalValue: what is out of range or of another kind is refused in one line", "[tools][error]") {
+    for (const char* given : {"2.5m,1,1", "1,1,2cm"})
+        CHECK(test::contains(refusal("synth", "size", given), "is not read: lengths are in the units"));
+    CHECK_FALSE(test::contains(refusal("synth", "size", "2y,1,1"), "is not read"));
     CHECK(refusal("synth", "block", "3") == "--block 3: must be a whole number from 4 to 256");
     for (const char* bad : {"", "x", "4.5", "1e99", "nan", "0x10", "16 ", "257", "9223372036854775808"})
         CHECK(test::contains(refusal("synth", "block", bad), "--block"));

@@ -245,11 +245,28 @@ std::string normalPath(const Option& option, const std::string& given) {
     }
 }
 
+// A unit of length behind one of the numbers, such as the m of 2.5m,1,1; empty: none.
+std::string unitIn(const std::string& given) {
+    static const std::vector<std::string> units{"nm", "um", "mm", "cm", "m", "km", "in", "ft"};
+    for (const std::string& part : splitAtCommas(given)) {
+        const std::size_t end = part.find_last_of("0123456789.");
+        double value = 0;
+        if (end == std::string::npos || !parseReal(part.substr(0, end + 1), value)) continue;
+        if (has(units, part.substr(end + 1))) return part.substr(end + 1);
+    }
+    return "";
+}
+
 }  // namespace
 
 void refuseValue(const Option& option, const std::string& given) {
+    const std::string unit = unitIn(given);
     throw Error(ErrorCode::InvalidOption,
-                "--" + option.name + " " + given + ": must be " + allowedText(option));
+                "--" + option.name + " " + given + ": must be " + allowedText(option) +
+                    (unit.empty() ? ""
+                                  : "; `" + unit +
+                                        "` is not read: lengths are in the units of the model's file, and "
+                                        "a model does not say which those are"));
 }
 
 std::string normalValue(const Option& option, const std::string& given) {

@@ -135,6 +135,19 @@ TextureDepth depthOf(const std::vector<PairFields>& fields, double scale) {
     return depth;
 }
 
+// [voxels] of a draft's target at its own resolution, which is only read: farther than the texture reaches,
+// and than a solid's radius can be while its thickness matters (thinWeight).
+int nearBand(const TextureDepth& depth) {
+    constexpr float kMore = 6;
+    return int(std::ceil(std::max(depth.reach, 2 * depth.dig) + kMore));
+}
+
+std::shared_ptr<const BrickField> halvedTarget(const LevelSet& target, const IndexBox& box,
+                                               const CutFaces& cut, float band, const RunContext& ctx) {
+    const KnownBand known = gatherKnownBand(*target.grid, box, cut, 2 * reachToWiden(band), ctx);
+    return std::make_shared<const BrickField>(widenBandCoarse(known, band, ctx));
+}
+
 AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const LevelSet& target,
                           const AnalogyOptions& options, const RunContext& ctx) {
     AnalogyResult result;
@@ -158,11 +171,13 @@ AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const Leve
     // peak.
     requireMemory(ctx, double(box.volume()) * 6 + double(activeVoxels(*target.grid)) / 6 * 2 * band * 160,
                   "the analogy", "use larger voxels, fewer `levels` or a smaller `half`");
+    const int near = options.draft ? std::min(band, nearBand(depth)) : band;
     const auto plain =
-        std::make_shared<const BrickField>(gatherWideBand(*target.grid, box, cut, float(band), ctx));
+        std::make_shared<const BrickField>(gatherWideBand(*target.grid, box, cut, float(near), ctx));
+    const auto searchedTarget = options.draft ? halvedTarget(target, box, cut, float(band) / 2, ctx) : plain;
     reading.advance();
     const FieldPlace place{target.grid.get(), {double(box.min.x), double(box.min.y), double(box.min.z)}, 1};
-    const SearchFields search = searchFields(fields, plain, place, options.draft, ctx);
+    const SearchFields search = searchFields(fields, searchedTarget, place, options.draft, ctx);
     const FrameField frames =
         framesOf(search.target, search.place, options.direction, "the target", "direction", ctx);
     VolumeAnalogyResult made = searched(search, frames, pairs, options, ctx);
@@ -173,11 +188,11 @@ AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const Leve
     map.targetBox = box;
     map.targetDomain = target.domain;
     map.cut = cut;
-    map.band = float(band);
+    map.band = float(near);
     map.halfWidth = options.halfWidth;
     map.analogy.strength = float(options.strength);
     map.analogy.weight =
-        weightOver(target, box, *plain, depth.dig, depth.reach, float(band - 1), options, ctx);
+        weightOver(target, box, *plain, depth.dig, depth.reach, float(near - 1), options, ctx);
     std::vector<ExemplarSamples> samples;
     std::vector<const LevelSet*> textured;
     for (std::size_t p = 0; p < pairs.size(); ++p) {

@@ -1,5 +1,4 @@
 // What an analogy searches, at the target's resolution or, for a draft, half of it.
-#include "libvdbsynth/grid/pyramid.h"
 #include "libvdbsynth/map/exemplar_variant.h"
 #include "libvdbsynth/math/affine.h"
 #include "libvdbsynth/math/lattice.h"
@@ -13,12 +12,7 @@ SearchFields searchFields(const std::vector<PairFields>& fields, std::shared_ptr
                           const FieldPlace& place, bool draft, const RunContext& ctx) {
     if (!draft) return {std::move(target), place, fields};
     SearchFields search;
-    const BrickField half = halved(*target, ctx);
-    search.target = std::make_shared<const BrickField>(
-        BrickField::generate(half.box(), ctx, [&](const IndexBox& brick, float* samples) {
-            half.readBox(brick.min, brick.size(), samples);
-            for (int i = 0; i < BrickField::kSamples; ++i) samples[i] /= 2;
-        }));
+    search.target = std::move(target);
     search.place = {place.like, place.corner + Vec3d{0.5, 0.5, 0.5}, 2};
     for (PairFields pair : fields) {
         pair.plain = std::make_shared<const BrickField>(scaledField(*pair.plain, 0.5, ctx));

@@ -47,8 +47,8 @@ struct SearchFields {
     std::vector<PairFields> pairs;
 };
 
-/// The target's field and the pairs' as they are or, for a draft, the target at half the resolution and the
-/// pairs at half the scale.
+/// The target's field and the pairs' as they are or, for a draft, the pairs at half the scale.
+/// @param target  for a draft at half the resolution   @param place  of the whole resolution
 SearchFields searchFields(const std::vector<PairFields>& fields, std::shared_ptr<const BrickField> target,
                           const FieldPlace& place, bool draft, const RunContext& ctx);
 

@@ -10,15 +10,17 @@ namespace vdbsynth {
 
 void ElementSources::append(const Source& source) {
     const Vec3d& p = source.position;
-    requireOption(source.weight > 0 && std::isfinite(source.weight), "weight", std::to_string(source.weight),
-                  "over 0");
-    requireOption(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z), "position", "nan",
-                  "three finite numbers");
+    // Texts are made for what is refused alone: millions of sources are added.
+    if (!(source.weight > 0) || !std::isfinite(source.weight))
+        requireOption(false, "weight", std::to_string(source.weight), "over 0");
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+        requireOption(false, "position", "nan", "three finite numbers");
     mSources.push_back(source);
 }
 
 void ElementSources::add(std::vector<Source> sources) {
-    requireOption(mKind != ElementKind::Voxel, "kind", "voxel", "another kind; voxels are added by position");
+    if (mKind == ElementKind::Voxel)
+        requireOption(false, "kind", "voxel", "another kind; voxels are added by position");
     std::stable_sort(sources.begin(), sources.end(),
                      [](const Source& a, const Source& b) { return a.weight > b.weight; });
     for (const Source& source : sources) append(source);
@@ -26,8 +28,8 @@ void ElementSources::add(std::vector<Source> sources) {
 }
 
 void ElementSources::add(const Index3& voxel, const Source& source) {
-    requireOption(mKind == ElementKind::Voxel, "kind", "point, vertex or corner",
-                  "voxel; other elements are added in order");
+    if (mKind != ElementKind::Voxel)
+        requireOption(false, "kind", "point, vertex or corner", "voxel; other elements are added in order");
     append(source);
     mVoxels.push_back(voxel);
     mEnd.push_back(mSources.size());

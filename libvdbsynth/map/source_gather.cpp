@@ -106,37 +106,29 @@ public:
           mReaders(sources.size()) {
         makeReaders(sources, exemplars, ctx);
         groupReaders();
+        if (factor == 1) readOwn(ctx);
     }
 
     // A voxel of the result, relative to its box's corner; `value` does not change where there is no source.
     void read(const Index3& local, float& value) const {
-        // Voxel i of the map covers the voxels factor * i + shift .. that begin at finerBox.
-        const Index3 fine = local + mFirst;
-        const Index3 voxel{local.x / mFactor + mBox.min.x, local.y / mFactor + mBox.min.y,
-                           local.z / mFactor + mBox.min.z};
-        if (mTable.find(voxel) < 0) return;
-        // Distance of the position from that voxel's middle [voxels of the map].
-        Vec3f from;
-        for (int axis = 0; axis < 3; ++axis)
-            from[axis] = float(fine[axis] - voxel[axis] * mFactor) / float(mFactor);
-        Proposals proposals;
-        forEachVoxel(reachOf(from), [&](const Index3& step) {
-            const std::int32_t j = mTable.find(voxel + step);
-            if (j < 0) return;
-            const Vec3f offset = from - Vec3f{float(step.x), float(step.y), float(step.z)};
-            const float far = 1 + dot(offset, offset);
-            const float weight = taper(offset.x) * taper(offset.y) * taper(offset.z) / (far * far);
-            proposals.add(j, mReaders[std::size_t(j)].group, offset, weight);
-        });
-        value = proposals.mean([&](std::int32_t j, const Vec3f& offset) {
-            return std::clamp(mReaders[std::size_t(j)](offset), -mLimit, mLimit);
-        });
+        if (mFactor == 1)
+            readWhole(local + mBox.min, value);
+        else
+            readFiner(local, value);
     }
 
 private:
     void makeReaders(const ElementSources& sources, const std::vector<ExemplarSamples>& exemplars,
                      const RunContext& ctx);
     void groupReaders();
+    void readOwn(const RunContext& ctx);
+    void readWhole(const Index3& voxel, float& value) const;
+    void readFiner(const Index3& local, float& value) const;
+    float meanOf(const Proposals& proposals) const {
+        return proposals.mean([&](std::int32_t j, const Vec3f& offset) {
+            return std::clamp(mReaders[std::size_t(j)](offset), -mLimit, mLimit);
+        });
+    }
 
     IndexBox mBox;
     int mFactor;
@@ -144,6 +136,7 @@ private:
     Index3 mFirst = finerBox(mBox, mFactor).min;
     VoxelTable mTable;
     std::vector<Reader> mReaders;
+    std::vector<float> mOwn;  // what each voxel's own source proposes there; empty for finer voxels
 };
 
 void Gather::makeReaders(const ElementSources& sources, const std::vector<ExemplarSamples>& exemplars,
@@ -169,10 +162,71 @@ void Gather::groupReaders() {
             const std::int32_t j = mTable.find(before);
             if (j < 0 || j >= i) continue;
             const std::int32_t first = mReaders[std::size_t(j)].group;
-            const Vec3f offset = cast<float>(voxel - mTable[std::size_t(first)]);
-            if (reader.readsAs(mReaders[std::size_t(first)], offset)) reader.group = first;
+            const Index3 apart = voxel - mTable[std::size_t(first)];
+            if (reader.readsAs(mReaders[std::size_t(first)],
+                               {float(apart.x), float(apart.y), float(apart.z)}))
+                reader.group = first;
         }
     }
+}
+
+void Gather::readOwn(const RunContext& ctx) {
+    mOwn.resize(mReaders.size());
+    parallelFor(ctx, mReaders.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            mOwn[i] = std::clamp(mReaders[i]({0, 0, 0}), -mLimit, mLimit);
+    });
+}
+
+// A voxel of the map. Distances change by no more than the way: a neighbour's source proposes here what it
+// does there but for the step between them, so that where all are far, nothing but their side matters.
+void Gather::readWhole(const Index3& voxel, float& value) const {
+    constexpr float kDiagonal = 1.75f;
+    static constexpr float kWeights[] = {1, 1 / 4.f, 1 / 9.f, 1 / 16.f};  // by the squared length of a step
+    const std::int32_t own = mTable.find(voxel);
+    if (own < 0) return;
+    value = mOwn[std::size_t(own)];
+    const float far = 0.5f * mLimit + kDiagonal, side = value < 0 ? -1.f : 1.f;
+    std::array<std::int32_t, 27> around;
+    bool allFar = true;
+    std::size_t count = 0;
+    forEachVoxel(IndexBox{voxel, voxel}.expanded(1), [&](const Index3& p) {
+        const std::int32_t j = around[count++] = mTable.find(p);
+        allFar = allFar && (j < 0 || mOwn[std::size_t(j)] * side >= far);
+    });
+    if (allFar) return;
+    Proposals proposals;
+    count = 0;
+    forEachVoxel(IndexBox{{-1, -1, -1}, {1, 1, 1}}, [&](const Index3& step) {
+        const std::int32_t j = around[count++];
+        if (j < 0) return;
+        const int squared = step.x * step.x + step.y * step.y + step.z * step.z;
+        proposals.add(j, mReaders[std::size_t(j)].group, {float(-step.x), float(-step.y), float(-step.z)},
+                      kWeights[squared]);
+    });
+    value = meanOf(proposals);
+}
+
+void Gather::readFiner(const Index3& local, float& value) const {
+    // Voxel i of the map covers the voxels factor * i + shift .. that begin at finerBox.
+    const Index3 fine = local + mFirst;
+    const Index3 voxel{local.x / mFactor + mBox.min.x, local.y / mFactor + mBox.min.y,
+                       local.z / mFactor + mBox.min.z};
+    if (mTable.find(voxel) < 0) return;
+    // Distance of the position from that voxel's middle [voxels of the map].
+    Vec3f from;
+    for (int axis = 0; axis < 3; ++axis)
+        from[axis] = float(fine[axis] - voxel[axis] * mFactor) / float(mFactor);
+    Proposals proposals;
+    forEachVoxel(reachOf(from), [&](const Index3& step) {
+        const std::int32_t j = mTable.find(voxel + step);
+        if (j < 0) return;
+        const Vec3f offset = from - Vec3f{float(step.x), float(step.y), float(step.z)};
+        const float far = 1 + dot(offset, offset);
+        const float weight = taper(offset.x) * taper(offset.y) * taper(offset.z) / (far * far);
+        proposals.add(j, mReaders[std::size_t(j)].group, offset, weight);
+    });
+    value = meanOf(proposals);
 }
 
 }  // namespace

@@ -27,12 +27,13 @@ struct ExemplarSamples {
 /// propose one value, which is read once where their places agree within a thousandth of a sample; where they
 /// do not, the mean has no seam. The voxel's own source has a quarter of the weight: with less, what is
 /// finest of a texture is lost where sources agree but for a part of a voxel. A field of `factor` times the
-/// map's resolution is read at the voxels that make up each voxel of the map.
+/// map's resolution is read at the voxels that make up each voxel of the map. Where all proposals are sure to
+/// be more than half the limit on one side, the voxel's own source is read alone.
 /// @param sources    of voxels, each with one source
 /// @param mapBox     the target box in the map's coordinates
 /// @param factor     1..64
 /// @param otherwise  values of voxels without a source; the result's resolution, box begins at 0
-/// @param limit      [voxels of the result] proposals are clamped there
+/// @param limit      [voxels of the result] proposals are clamped there; distances are good up to half of it
 /// @par Cost    O(voxels with a source * factor^3 * 27)   @par Repeats same bits for any number of threads
 BrickField gatherThroughSources(const ElementSources& sources, const IndexBox& mapBox, int factor,
                                 const std::vector<ExemplarSamples>& exemplars, const BrickField& otherwise,

@@ -89,6 +89,11 @@ VolumeAnalogyResult searched(const SearchFields& search, const FrameField& frame
     VolumeAnalogyOptions synthesis = options.synthesis;
     if (options.draft && synthesis.levels == 0)
         synthesis.levels = std::min(kDraftLevels, usefulLevels(given, ctx));
+    if (options.draft) {
+        if (synthesis.sweeps > VolumeAnalogyOptions().sweeps)
+            message(ctx, MessageLevel::Note, "a draft takes one sweep, not the `sweeps` asked for");
+        synthesis.sweeps = 1;
+    }
     return makeAnalogy(given, *search.target, frames, synthesis, ctx);
 }
 
@@ -135,11 +140,11 @@ TextureDepth depthOf(const std::vector<PairFields>& fields, double scale) {
     return depth;
 }
 
-// [voxels] of a draft's target at its own resolution, which is only read: farther than the texture reaches,
-// and than a solid's radius can be while its thickness matters (thinWeight).
+// [voxels] of a draft's target at its own resolution, which is not searched: farther than the texture reaches
+// and digs.
 int nearBand(const TextureDepth& depth) {
-    constexpr float kMore = 6;
-    return int(std::ceil(std::max(depth.reach, 2 * depth.dig) + kMore));
+    constexpr float kMore = 5;
+    return int(std::ceil(std::max(depth.reach, depth.dig) + kMore));
 }
 
 std::shared_ptr<const BrickField> halvedTarget(const LevelSet& target, const IndexBox& box,

@@ -27,7 +27,8 @@ struct AnalogyOptions {
     GridConstPtr mask;    ///< 0..1 over the target, by which strength is multiplied; null: 1
     ThinParts thin = ThinParts::Scale;
     /// A quick look: sources are searched at half the resolution, with the texture at half the size, and read
-    /// at full resolution. In about a tenth of the time.
+    /// at full resolution, in one sweep (`synthesis.sweeps` is not read) and at most two levels. A note says
+    /// that other sweeps are not taken.
     bool draft = false;
     float halfWidth = kHalfWidth;  ///< [voxels] of the result, 1.5..100
     bool keepDirections = false;   ///< fills AnalogyResult::directions

@@ -256,9 +256,9 @@ TEST_CASE("synthesize: numbers and vectors that come along can be means of all t
     const auto integers = openvdb::gridPtrCast<openvdb::Int32Grid>(blends.model.attributes[2]),
                same = openvdb::gridPtrCast<openvdb::Int32Grid>(copies.model.attributes[2]);
     for (auto it = integers->cbeginValueOn(); it; ++it) REQUIRE(*it == same->tree().getValue(it.getCoord()));
-    RepeatOptions blending;
-    blending.carried = AttributeValues::Blended;
-    const LevelSet again = repeatMap(blends.map, {&exemplar}, blending);
+    RepeatOptions repeating;
+    repeating.carried = AttributeValues::Blended;
+    const LevelSet again = repeatMap(blends.map, {&exemplar}, repeating);
     const auto repeated = openvdb::gridPtrCast<openvdb::FloatGrid>(again.attributes[0]);
     for (auto it = blended->cbeginValueOn(); it; ++it)
         REQUIRE(repeated->tree().getValue(it.getCoord()) == *it);

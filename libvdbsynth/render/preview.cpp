@@ -15,7 +15,7 @@
 namespace vdbsynth {
 namespace {
 
-constexpr std::size_t kRows = 24;  // of the picture that are drawn together
+constexpr std::size_t kRows = 48;  // of the picture that are drawn together, and two more for their edges
 constexpr Vec3f kInk{0.012f, 0.014f, 0.018f};
 
 struct Hit {

@@ -197,7 +197,7 @@ bool TracedSurface::meets(const Vec3f& origin, const Vec3f& direction, float& al
     float before = begin, outside = mLimit;
     for (float t = begin + 1e-3f; t < end;) {
         const Vec3f p = origin + direction * t;
-        const Index3 brick{int(p.x) >> 3, int(p.y) >> 3, int(p.z) >> 3};
+        const Index3 cell{int(p.x), int(p.y), int(p.z)}, brick{cell.x >> 3, cell.y >> 3, cell.z >> 3};
         const std::size_t b =
             latticeIndex({std::clamp(brick.x, 0, mBricks.x - 1), std::clamp(brick.y, 0, mBricks.y - 1),
                           std::clamp(brick.z, 0, mBricks.z - 1)},
@@ -216,7 +216,10 @@ bool TracedSurface::meets(const Vec3f& origin, const Vec3f& direction, float& al
             t = std::max(leave, t) + 1e-2f;
             continue;
         }
-        const float value = bandDistance(p);
+        // Rounding may put a place next to the end a little beyond it.
+        const bool within = p.x >= 0 && p.y >= 0 && p.z >= 0 && brick.x < mBricks.x && brick.y < mBricks.y &&
+                            brick.z < mBricks.z;
+        const float value = mSlots[b] >= 0 && within ? sampleIn(mSlots[b], cell, p) : bandDistance(p);
         if (value < 0) {
             float low = before, high = t, atLow = outside, atHigh = value;
             for (int i = 0; i < 6; ++i) {

@@ -62,6 +62,8 @@ private:
     void layOut(const BrickField& field, const RunContext& ctx);
     void measureEmptiness();
     float coarseAt(const Vec3f& p) const;
+    // Trilinear in a cell of the brick with this slot.
+    float sampleIn(std::int32_t slot, const Index3& cell, const Vec3f& p) const;
     bool isBeyond(const Vec3f& p) const {
         for (int axis = 0; axis < 3; ++axis)
             if (p[axis] < 0 || p[axis] > mLast[axis]) return true;
@@ -93,9 +95,13 @@ inline float TracedSurface::bandDistance(const Vec3f& p) const {
     if (bx < 0 || by < 0 || bz < 0 || bx >= mBricks.x || by >= mBricks.y || bz >= mBricks.z) return mLimit;
     const std::int32_t slot = mSlots[latticeIndex({bx, by, bz}, mBricks)];
     if (slot < 0) return slot == kAllInside ? -mLimit : mLimit;
+    return sampleIn(slot, {x, y, z}, p);
+}
+
+inline float TracedSurface::sampleIn(std::int32_t slot, const Index3& cell, const Vec3f& p) const {
     const std::int16_t* s = mSamples.data() + std::size_t(slot) * kBrickSamples +
-                            ((x & 7) * kStride + (y & 7)) * kStride + (z & 7);
-    const float fx = p.x - float(x), fy = p.y - float(y), fz = p.z - float(z);
+                            ((cell.x & 7) * kStride + (cell.y & 7)) * kStride + (cell.z & 7);
+    const float fx = p.x - float(cell.x), fy = p.y - float(cell.y), fz = p.z - float(cell.z);
     const auto along = [fz](const std::int16_t* q) { return float(q[0]) + (float(q[1]) - float(q[0])) * fz; };
     constexpr int kY = kStride, kX = kStride * kStride;
     const float low = along(s) + (along(s + kY) - along(s)) * fy;
@@ -131,10 +137,9 @@ inline float TracedSurface::farDistance(const Vec3f& p) const {
         const float there = coarseAt(inside);
         return std::sqrt(there * there + dot(apart, apart));
     }
-    const float coarse = coarseAt(p);
-    if (coarse > mLimit + 1.8f * float(mCoarseness)) return coarse;
+    // Most rays ask next to the surface, where the coarse distances are not needed.
     const float band = bandDistance(p);
-    return band < 0.8f * mLimit ? std::max(0.f, band) : std::max(band, coarse);
+    return band < 0.8f * mLimit ? std::max(0.f, band) : std::max(band, coarseAt(p));
 }
 
 }  // namespace vdbsynth

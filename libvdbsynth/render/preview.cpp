@@ -21,7 +21,7 @@ constexpr Vec3f kInk{0.012f, 0.014f, 0.018f};
 struct Hit {
     bool surface = false;
     float depth = 0, opacity = 1;
-    Vec3f normal;
+    Vec3f place, normal;
     Vec3f colour;  // of transparent ones times their opacity
 };
 
@@ -58,14 +58,27 @@ public:
 
     // x and y from 0 to 1, from the left and top.
     Hit trace(double x, double y) {
+        Hit hit = met(x, y);
+        if (hit.surface) shade(hit, skyOver(hit));
+        return hit;
+    }
+
+    Lighting::Sky skyOver(const Hit& hit) const { return mLighting.skyOver(hit.place, hit.normal); }
+
+    void shade(Hit& hit, const Lighting::Sky& sky) {
+        hit.colour =
+            mLighting.shaded(hit.place, hit.normal, normalized(mEye - hit.place), albedoAt(hit.place), sky);
+    }
+
+    // What is seen, without the colour of a surface.
+    Hit met(double x, double y) {
         Hit hit;
         const Vec3f direction = unit(mCamera.through(x, y));
         if (mSurface.meets(mEye, direction, hit.depth)) {
             hit.surface = true;
-            const Vec3f place = mEye + direction * hit.depth;
-            hit.normal = mSurface.normalAt(place);
+            hit.place = mEye + direction * hit.depth;
+            hit.normal = mSurface.normalAt(hit.place);
             if (dot(hit.normal, direction) > 0) hit.normal = -hit.normal;
-            hit.colour = mLighting.shaded(place, hit.normal, -direction, albedoAt(place));
             return hit;
         }
         hit.colour = mOptions.background.at(float(1 - y));
@@ -120,11 +133,51 @@ struct Strip {
     int width, first, rows;
     std::vector<Hit> hits;
 
-    const Hit& at(int x, int y) const {
-        return hits[std::size_t(y - first) * std::size_t(width) + std::size_t(x)];
+    std::size_t index(int x, int y) const {
+        return std::size_t(y - first) * std::size_t(width) + std::size_t(x);
     }
+    const Hit& at(int x, int y) const { return hits[index(x, y)]; }
     bool holds(int x, int y) const { return x >= 0 && x < width && y >= first && y < first + rows; }
 };
+
+// The mean of what the places around see, at every second pixel along x and y: the sky changes slowly over a
+// smooth surface. False where the pixel is one of these, or next to an edge.
+bool skyBetween(const Strip& strip, const std::vector<Lighting::Sky>& skies, int x, int y,
+                Lighting::Sky& mean) {
+    const int alongX = x & 1, alongY = y & 1;
+    if (!alongX && !alongY) return false;
+    const Hit& here = strip.at(x, y);
+    mean = {};
+    for (const int dy : {-alongY, alongY})
+        for (const int dx : {-alongX, alongX}) {
+            if (!strip.holds(x + dx, y + dy)) return false;
+            const Hit& there = strip.at(x + dx, y + dy);
+            if (!there.surface || dot(here.normal, there.normal) < 0.97f ||
+                std::abs(here.depth - there.depth) > 0.01f * here.depth)
+                return false;
+            const Lighting::Sky& sky = skies[strip.index(x + dx, y + dy)];
+            mean.light = mean.light + sky.light * 0.25f;
+            mean.open += 0.25f * sky.open;
+        }
+    return true;
+}
+
+void shadeStrip(Tracer& tracer, Strip& strip) {
+    std::vector<Lighting::Sky> skies(strip.hits.size());
+    const auto each = [&](const auto& act) {
+        for (int y = strip.first; y < strip.first + strip.rows; ++y)
+            for (int x = 0; x < strip.width; ++x)
+                if (strip.at(x, y).surface) act(x, y, skies[strip.index(x, y)]);
+    };
+    each([&](int x, int y, Lighting::Sky& sky) {
+        if (!(x & 1) && !(y & 1)) sky = tracer.skyOver(strip.at(x, y));
+    });
+    each([&](int x, int y, Lighting::Sky& sky) {
+        if (((x & 1) || (y & 1)) && !skyBetween(strip, skies, x, y, sky))
+            sky = tracer.skyOver(strip.at(x, y));
+        tracer.shade(strip.hits[strip.index(x, y)], sky);
+    });
+}
 
 bool isEdge(const Strip& strip, int x, int y) {
     const Hit& here = strip.at(x, y);
@@ -191,7 +244,8 @@ private:
         strip.hits.reserve(std::size_t(width) * std::size_t(strip.rows));
         for (int y = strip.first; y < strip.first + strip.rows; ++y)
             for (int x = 0; x < width; ++x)
-                strip.hits.push_back(tracer.trace((x + 0.5) / width, (y + 0.5) / height));
+                strip.hits.push_back(tracer.met((x + 0.5) / width, (y + 0.5) / height));
+        shadeStrip(tracer, strip);
         for (int y = begin; y < end; ++y)
             for (int x = 0; x < width; ++x) {
                 Vec3f colour = strip.at(x, y).colour;

@@ -38,9 +38,17 @@ public:
     /// @param up      unit vector, in the places of `surface`
     Lighting(const TracedSurface& surface, const Camera& camera, const Vec3f& up);
 
+    /// What a place sees of the sky.
+    struct Sky {
+        Vec3f light;     ///< from all of it, as weighted by the normal
+        float open = 0;  ///< the share that is seen, 0..1
+    };
+    Sky skyOver(const Vec3f& place, const Vec3f& normal) const { return skyAt(place, normal, kFirstEdge); }
+
     /// Light from a place of the surface towards the eye.
-    /// @param towards  unit vector to the eye   @param albedo  0..1
-    Vec3f shaded(const Vec3f& place, const Vec3f& normal, const Vec3f& towards, const Vec3f& albedo) const;
+    /// @param towards  unit vector to the eye   @param albedo  0..1   @param sky  skyOver, or near it
+    Vec3f shaded(const Vec3f& place, const Vec3f& normal, const Vec3f& towards, const Vec3f& albedo,
+                 const Sky& sky) const;
     /// Share of light that a place of the ground gets, 0..1, next to one far from the model.
     Vec3f onGround(const Vec3f& place) const;
     /// Share of the sky that a place of the surface sees, 0..1.
@@ -54,10 +62,6 @@ public:
 
 private:
     static constexpr std::size_t kFirstEdge = 14;  // of the directions; faces and corners come before
-    struct Sky {
-        Vec3f light;     // from all of it, as weighted by the normal
-        float open = 0;  // the share that is seen
-    };
     Sky skyAt(const Vec3f& place, const Vec3f& normal, std::size_t directions) const;
     Vec3f skyColour(float height) const;
 

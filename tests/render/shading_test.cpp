@@ -87,8 +87,10 @@ TEST_CASE("Lighting: the floor of a groove sees less of the sky than the top bes
     const float wall = lighting.openAt(here({30, 27, 6}), {0, 1, 0});
     CHECK(top > 0.9f);
     CHECK(wall < 0.35f);
-    const Vec3f lit = lighting.shaded(here({30, 15, 30}), {0, 0, 1}, {0, 0, 1}, kClay);
-    const Vec3f dark = lighting.shaded(here({30, 27, 6}), {0, 1, 0}, {0, 0, 1}, kClay);
+    const Vec3f lit = lighting.shaded(here({30, 15, 30}), {0, 0, 1}, {0, 0, 1}, kClay,
+                                      lighting.skyOver(here({30, 15, 30}), {0, 0, 1}));
+    const Vec3f dark = lighting.shaded(here({30, 27, 6}), {0, 1, 0}, {0, 0, 1}, kClay,
+                                       lighting.skyOver(here({30, 27, 6}), {0, 1, 0}));
     CHECK(lit.x > 2.5f * dark.x);
     CHECK(lit.x > lit.z);  // clay is warm
 }

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Makes pictures of docs/pictures again with a built program, from models that `make` makes.
-# Usage: make_pictures.sh [PROGRAM [NAME...]]; NAME is synth, synthesis, analogies, shallow, patches, relief, texturing, render, fog, direction or
-# poses, all by default. Not made here: controls.png and analogy_directions.png, whose maps and sponge were not kept.
+# Usage: make_pictures.sh [PROGRAM [NAME...]]; NAME is synth, synthesis, controls, analogies, shallow, field, patches, relief, texturing, render, fog,
+# direction or poses, all by default. Maps and the cloud need python3-openvdb, joined pictures python3-pil.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 program=$(realpath "${1:-$root/build/release/tools/vdb_synth/vdb_synth}")
 shift || true
 names=("$@")
-[ ${#names[@]} -gt 0 ] || names=(synth synthesis analogies shallow patches relief texturing render fog direction poses)
+[ ${#names[@]} -gt 0 ] || names=(synth synthesis controls analogies shallow field patches relief texturing render fog direction poses)
 pictures=$root/docs/pictures
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -37,6 +37,19 @@ draw_synthesis() {
     all+=("$kind.vdb" "$kind-paper.vdb" "$kind-more.vdb")
   done
   run render "${all[@]}" -o "$pictures/synthesis.png" --size 290x225 --columns 3 --samples 8 --captions none
+}
+
+# A lattice inside a sponge, fibres from the middle outwards, a lattice that grows.
+draw_controls() {
+  local kind
+  mkdir -p c && cd c
+  for kind in sponge grid fibres; do run make "$kind" "$kind.vdb" --seed 1; done
+  /usr/bin/python3 "$root/tools/dev/make_maps.py" maps.vdb
+  run synth sponge.vdb grid.vdb -o inside.vdb --size 128,128,64 --exemplar-map maps.vdb:label
+  run synth fibres.vdb -o outwards.vdb --size 128,128,64 --direction radial
+  run synth grid.vdb -o grows.vdb --size 128,128,64 --scale-map maps.vdb:scale
+  run render inside.vdb outwards.vdb grows.vdb -o "$pictures/controls.png" --size 420x320 --samples 8 --captions none
+  cd ..
 }
 
 draw_analogies() {
@@ -71,6 +84,26 @@ draw_shallow() {
   run make scales S.vdb S2.vdb
   run analogy S.vdb S2.vdb tori.vdb -o scaly.vdb --direction around:z
   run render walls.vdb scaly.vdb -o "$pictures/analogies-shallow.png" --size 480x380 --samples 8 --captions none
+  cd ..
+}
+
+# A direction field as streaks, and grooves along it.
+draw_field() {
+  mkdir -p f && cd f
+  run make sponge sponge.vdb --resolution 128 --feature 72 --seed 6
+  run make grooves A.vdb A2.vdb
+  run analogy A.vdb A2.vdb sponge.vdb -o grooved.vdb --direction axis:z --write-directions
+  run render sponge.vdb -o 1.png --directions grooved.vdb:direction --size 480x420 --samples 8 --view 1,-1.2,1
+  run render grooved.vdb -o 2.png --size 480x420 --samples 8 --view 1,-1.2,1
+  /usr/bin/python3 - "$pictures/analogy_directions.png" <<'JOIN'
+import sys
+from PIL import Image
+left, right = (Image.open(name).convert("RGB") for name in ("1.png", "2.png"))
+both = Image.new("RGB", (left.width + right.width, left.height))
+both.paste(left, (0, 0))
+both.paste(right, (left.width, 0))
+both.save(sys.argv[1])
+JOIN
   cd ..
 }
 

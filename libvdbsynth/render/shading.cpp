@@ -156,8 +156,8 @@ Lighting::Sky Lighting::skyAt(const Vec3f& place, const Vec3f& normal, std::size
     return sky;
 }
 
-Vec3f Lighting::shaded(const Vec3f& place, const Vec3f& normal, const Vec3f& towards,
-                       const Vec3f& albedo, const Sky& sky) const {
+Vec3f Lighting::shaded(const Vec3f& place, const Vec3f& normal, const Vec3f& towards, const Vec3f& albedo,
+                       const Sky& sky) const {
     const float facing = dot(normal, mSun);
     const float key = facing > 0 ? facing * sunAt(place + normal * 0.9f) : 0;
     const float behind = std::max(0.f, dot(normal, mBehind)) * sky.open;

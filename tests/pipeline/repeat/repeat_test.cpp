@@ -5,7 +5,6 @@
 #include "libvdbsynth/pipeline/analogy/analogy.h"
 #include "libvdbsynth/pipeline/crop/crop.h"
 #include "libvdbsynth/pipeline/fill/fill.h"
-#include "libvdbsynth/pipeline/make/make.h"
 #include "libvdbsynth/pipeline/synth/synth.h"
 #include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
@@ -13,31 +12,15 @@
 #include "libvdbsynth/vdb/redistance.h"
 #include "libvdbsynth/vdb/source_map_grids.h"
 #include "libvdbsynth/vdb/vdb_file.h"
+#include "tests/support/made_models.h"
 #include "tests/support/makers.h"
 #include "tests/support/temporary_folder.h"
 
 using namespace vdbsynth;
+using test::made;
+using test::sized;
 
 namespace {
-
-LevelSet made(const char* kind, int resolution = 40, double feature = 0, double voxel = 1,
-              std::uint64_t seed = 0) {
-    openvdb::initialize();
-    MakeOptions options;
-    options.exemplar.kind = kind;
-    options.exemplar.resolution = resolution;
-    options.exemplar.feature = feature;
-    options.voxelSize = voxel;
-    RunContext ctx;
-    ctx.seed = seed;
-    return makeModel(options, ctx);
-}
-
-SynthOptions sized(double x, double y, double z) {
-    SynthOptions options;
-    options.size = TargetSize::multiples(x, y, z);
-    return options;
-}
 
 // Through a file of either kind of grids and back.
 LevelSet again(const SourceMap& map, const LevelSet& result, const std::vector<const LevelSet*>& inputs,

@@ -3,34 +3,20 @@
 
 #include <catch2/catch.hpp>
 
-#include "libvdbsynth/pipeline/make/make.h"
 #include "libvdbsynth/pipeline/repeat/repeat.h"
 #include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/source_map_grids.h"
 #include "libvdbsynth/vdb/vdb_file.h"
+#include "tests/support/made_models.h"
 #include "tests/support/makers.h"
 #include "tests/support/said.h"
 #include "tests/support/temporary_folder.h"
 
 using namespace vdbsynth;
+using test::made;
+using test::sized;
 
 namespace {
-
-LevelSet made(const char* kind, int resolution = 40, double feature = 0, double voxel = 1) {
-    openvdb::initialize();
-    MakeOptions options;
-    options.exemplar.kind = kind;
-    options.exemplar.resolution = resolution;
-    options.exemplar.feature = feature;
-    options.voxelSize = voxel;
-    return makeModel(options);
-}
-
-SynthOptions sized(double x, double y, double z) {
-    SynthOptions options;
-    options.size = TargetSize::multiples(x, y, z);
-    return options;
-}
 
 // A grid that is `inside` in a box and `outside` elsewhere.
 GridPtr boxGrid(const IndexBox& box, float inside, float outside = 0) {

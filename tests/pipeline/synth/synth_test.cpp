@@ -5,37 +5,20 @@
 
 #include "libvdbsynth/grid/components.h"
 #include "libvdbsynth/grid/occupancy.h"
-#include "libvdbsynth/pipeline/make/make.h"
 #include "libvdbsynth/pipeline/repeat/repeat.h"
 #include "libvdbsynth/vdb/bricks.h"
 #include "libvdbsynth/vdb/convert/level_set_to_mesh.h"
 #include "libvdbsynth/vdb/convert/mesh_to_level_set.h"
 #include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/mask.h"
+#include "libvdbsynth/vdb/source_map_grids.h"
+#include "tests/support/made_models.h"
 #include "tests/support/makers.h"
 #include "tests/support/said.h"
 
 using namespace vdbsynth;
-
-namespace {
-
-LevelSet made(const char* kind, int resolution = 40, double feature = 0, double voxel = 1) {
-    openvdb::initialize();
-    MakeOptions options;
-    options.exemplar.kind = kind;
-    options.exemplar.resolution = resolution;
-    options.exemplar.feature = feature;
-    options.voxelSize = voxel;
-    return makeModel(options);
-}
-
-SynthOptions sized(double x, double y, double z) {
-    SynthOptions options;
-    options.size = TargetSize::multiples(x, y, z);
-    return options;
-}
-
-}  // namespace
+using test::made;
+using test::sized;
 
 TEST_CASE("synthesize: the result fills its domain, is valid, closed and about as full as the exemplar",
           "[pipeline][property]") {

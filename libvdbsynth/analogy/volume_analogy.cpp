@@ -4,13 +4,14 @@
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 
+#include <memory>
 #include <optional>
 #include <string>
 
 namespace vdbsynth {
 namespace {
 
-void requirePairs(const std::vector<AnalogyPair>& pairs, const BrickField& target) {
+void requirePairs(const std::vector<AnalogyPair>& pairs) {
     requireOption(!pairs.empty(), "pairs", "0", "at least one");
     for (std::size_t p = 0; p < pairs.size(); ++p) {
         const std::string what = "pair " + std::to_string(p + 1);
@@ -18,7 +19,6 @@ void requirePairs(const std::vector<AnalogyPair>& pairs, const BrickField& targe
         requireField(pairs[p].textured.get(), what + ", textured", pairs[p].plain->box().size());
         if (!pairs[p].frames) throw Error(ErrorCode::InvalidOption, what + ": `frames` are null");
     }
-    requireField(&target, "the target");
 }
 
 }  // namespace
@@ -39,24 +39,44 @@ void validate(const VolumeAnalogyOptions& options) {
                   "from 0 to 100");
 }
 
-VolumeAnalogyResult makeAnalogy(const std::vector<AnalogyPair>& pairs, const BrickField& target,
-                                const FrameField& frames, const VolumeAnalogyOptions& given,
-                                const RunContext& ctx) {
-    validate(given);
-    requirePairs(pairs, target);
-    VolumeAnalogyOptions options = given;
-    if (options.levels == 0) options.levels = usefulLevels(pairs, ctx);
-    std::vector<PairLevels> levels;
+struct TrainedPairs {
+    VolumeAnalogyOptions options;
+    std::vector<PairLevels> levels;                           // of each pair
+    std::vector<std::unique_ptr<AnalogyTraining>> trainings;  // of each level, the finest first
+
+    FeatureShape shapeAt(int level) const {
+        return {options.half, options.coarseHalf, options.causal, level + 1 < options.levels};
+    }
+};
+
+std::shared_ptr<const TrainedPairs> trainPairs(const std::vector<AnalogyPair>& pairs,
+                                               const VolumeAnalogyOptions& options, const RunContext& ctx) {
+    validate(options);
+    requirePairs(pairs);
+    const auto trained = std::make_shared<TrainedPairs>();
+    trained->options = options;
+    int& levels = trained->options.levels;
+    if (levels == 0) levels = usefulLevels(pairs, ctx);
     for (const AnalogyPair& pair : pairs)
-        levels.push_back({analogyPyramid(*pair.plain, options.levels, ctx),
-                          analogyPyramid(*pair.textured, options.levels, ctx)});
+        trained->levels.push_back(
+            {analogyPyramid(*pair.plain, levels, ctx), analogyPyramid(*pair.textured, levels, ctx)});
+    for (int l = 0; l < levels; ++l)
+        trained->trainings.push_back(std::make_unique<AnalogyTraining>(
+            pairs, trained->levels, l, trained->shapeAt(l), trained->options, ctx));
+    return trained;
+}
+
+VolumeAnalogyResult makeAnalogy(const TrainedPairs& pairs, const BrickField& target, const FrameField& frames,
+                                const RunContext& ctx) {
+    requireField(&target, "the target");
+    const VolumeAnalogyOptions& options = pairs.options;
     const AnalogyPyramid plain = analogyPyramid(target, options.levels, ctx);
     VolumeAnalogyResult result;
     std::optional<AnalogyLevelResult> made;
     for (int l = options.levels - 1; l >= 0; --l) {
-        const FeatureShape shape{options.half, options.coarseHalf, options.causal, l + 1 < options.levels};
-        const AnalogyTraining training(pairs, levels, l, shape, options, ctx);
-        AnalogyLevel level(training, plain, frames, l, shape, made ? &*made : nullptr, options, ctx);
+        const AnalogyTraining& training = *pairs.trainings[std::size_t(l)];
+        AnalogyLevel level(training, plain, frames, l, pairs.shapeAt(l), made ? &*made : nullptr, options,
+                           ctx);
         result.levels.push_back(level.run());
         if (l > 0) {
             made = level.made();
@@ -66,6 +86,12 @@ VolumeAnalogyResult makeAnalogy(const std::vector<AnalogyPair>& pairs, const Bri
         }
     }
     return result;
+}
+
+VolumeAnalogyResult makeAnalogy(const std::vector<AnalogyPair>& pairs, const BrickField& target,
+                                const FrameField& frames, const VolumeAnalogyOptions& options,
+                                const RunContext& ctx) {
+    return makeAnalogy(*trainPairs(pairs, options, ctx), target, frames, ctx);
 }
 
 }  // namespace vdbsynth

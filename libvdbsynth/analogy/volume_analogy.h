@@ -56,6 +56,19 @@ VolumeAnalogyResult makeAnalogy(const std::vector<AnalogyPair>& pairs, const Bri
                                 const FrameField& frames, const VolumeAnalogyOptions& options,
                                 const RunContext& ctx = {});
 
+/// Pairs with all that is searched of them: pyramids, features and their index. The frames of one sequence
+/// share it.
+struct TrainedPairs;
+/// @throw Error as makeAnalogy   @par Cost  memory 100 to 200 bytes for each voxel of the pairs near the
+/// surface
+std::shared_ptr<const TrainedPairs> trainPairs(const std::vector<AnalogyPair>& pairs,
+                                               const VolumeAnalogyOptions& options,
+                                               const RunContext& ctx = {});
+/// The same result as from the pairs themselves, with the options that they were trained with.
+/// @throw Error as above, for the target
+VolumeAnalogyResult makeAnalogy(const TrainedPairs& pairs, const BrickField& target, const FrameField& frames,
+                                const RunContext& ctx = {});
+
 inline constexpr float kAnalogyFar = 6;  ///< [voxels] distance of voxels away from the result's surface
 
 /// The textured distance field that sources give over a target: gatherThroughSources where there are sources,

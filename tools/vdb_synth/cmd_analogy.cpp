@@ -52,10 +52,10 @@ AnalogyOptions parseOptions(const Arguments& arguments) {
     return options;
 }
 
-// Of a sequence it is made once, where only B and what is written differ.
-std::vector<std::string> madeOf(const Arguments& arguments) {
+// What pairs, with the named options, are made of.
+std::vector<std::string> madeOf(const Arguments& arguments, const std::vector<const char*>& options) {
     std::vector<std::string> paths(arguments.inputs.begin(), arguments.inputs.end() - 1);
-    for (const char* name : {"rest", "mask", "direction", "exemplar-direction"}) {
+    for (const char* name : options) {
         const std::string path = pathIn(*findOption("analogy", name), arguments.text(name));
         if (!path.empty()) paths.push_back(arguments.text(name));
     }
@@ -181,6 +181,20 @@ void filter(Run& run, const VolumeAnalogyOptions& synthesis) {
     run.finish();
 }
 
+struct Pairs {
+    std::shared_ptr<const PreparedPairs> prepared;
+};
+
+// Of a sequence they are prepared once, unless a size of the texture makes a scale for each frame.
+std::shared_ptr<Pairs> preparedPairs(Run& run, const Models& models, const AnalogyOptions& options) {
+    std::vector<AnalogyModelPair> pairs;
+    for (std::size_t i = 0; i < models.pairs.size(); i += 2)
+        pairs.push_back({&models.pairs[i], &models.pairs[i + 1]});
+    return run.shared<Pairs>(
+        "pairs at scale " + exactText(options.scale), madeOf(run.arguments, {"exemplar-direction"}),
+        [&] { return std::make_shared<Pairs>(Pairs{preparePairs(pairs, options, run.context)}); });
+}
+
 // What the texture is made on, and the result there.
 struct Made {
     LevelSet target;
@@ -197,11 +211,8 @@ Made makeResult(Run& run, AnalogyOptions options) {
         options.mask = maskOf(run, "mask", voxelSizeOf(*models.target.grid), kMaskHalfWidth);
     options.direction = directionOf(run, "direction");
     options.exemplarDirection = directionOf(run, "exemplar-direction");
-    std::vector<AnalogyModelPair> pairs;
-    for (std::size_t i = 0; i < models.pairs.size(); i += 2)
-        pairs.push_back({&models.pairs[i], &models.pairs[i + 1]});
-    Made made{models.target, makeAnalogyModel(pairs, models.target, options, run.context)};
-    return made;
+    const auto pairs = preparedPairs(run, models, options);
+    return {models.target, makeAnalogyModel(*pairs->prepared, models.target, options, run.context)};
 }
 
 // B in the pose of the frame: in the voxels of the pose at rest, with its mesh or its grid of places.
@@ -221,12 +232,15 @@ void analogyInPose(Run& run, const AnalogyOptions& options, const std::vector<st
                     "--rest, with the rest pose as B");
     run.reserveOutputs();
     bool now = false;
-    const auto made = run.shared<Made>("analogy at rest", madeOf(run.arguments), [&] {
+    // Only B and what is written differ.
+    const std::vector<std::string> from =
+        madeOf(run.arguments, {"rest", "mask", "direction", "exemplar-direction"});
+    const auto made = run.shared<Made>("analogy at rest", from, [&] {
         now = true;
         return std::make_shared<Made>(makeResult(run, options));
     });
     if (!now)
-        for (const std::string& path : madeOf(run.arguments)) run.noteInput(splitGridPath(path).file);
+        for (const std::string& path : from) run.noteInput(splitGridPath(path).file);
     LevelSet atRest = made->result.model;
     if (made->result.directions) atRest.attributes.push_back(made->result.directions);
     PoseOptions pose;

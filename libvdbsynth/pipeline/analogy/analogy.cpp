@@ -20,37 +20,28 @@
 namespace vdbsynth {
 namespace {
 
-DirectionSource directionOfPair(const LevelSet& plain, const DirectionSource& given) {
-    if (given.kind != DirectionSource::Kind::Automatic) return given;
-    DirectionSource source;
-    const auto recorded = plain.grid->getMetadata<openvdb::StringMetadata>(kDirectionKey);
-    if (recorded) parseDirection(recorded->value(), source);
-    return source;
-}
-
 // The result as a map: positions in the pairs' index spaces, on voxels of the target's.
-SourceMap mapOf(const VolumeAnalogyResult& made, const std::vector<PairFields>& fields,
-                const std::vector<AnalogyModelPair>& pairs, double scale) {
+SourceMap mapOf(const VolumeAnalogyResult& made, const PreparedPairs& pairs, double scale) {
     SourceMap map;
     map.method = MapMethod::Analogy;
-    for (std::size_t p = 0; p < pairs.size(); ++p) {
-        const LevelSet& textured = *pairs[p].textured;
-        map.exemplars.push_back({fields[p].box, textured.domain, levelSetHash(*textured.grid),
-                                 fields[p].cutTextured, transformOf(*textured.grid)});
+    for (std::size_t p = 0; p < pairs.fields.size(); ++p) {
+        const LevelSet& textured = pairs.textured[p];
+        map.exemplars.push_back({pairs.fields[p].box, textured.domain, levelSetHash(*textured.grid),
+                                 pairs.fields[p].cutTextured, transformOf(*textured.grid)});
     }
-    map.voxelSize = voxelSizeOf(*pairs.front().textured->grid);
+    map.voxelSize = voxelSizeOf(*pairs.textured.front().grid);
     map.analogy.scale = scale;
     map.analogy.depths = made.depths;
     return map;
 }
 
-// @param corner  of the target's box
-ElementSources placed(const ElementSources& made, const std::vector<PairFields>& fields, const Index3& corner,
+// @param places  of the pairs that were searched   @param corner  of the target's box
+ElementSources placed(const ElementSources& made, const std::vector<FieldPlace>& places, const Index3& corner,
                       double scale) {
     ElementSources sources;
     for (std::size_t i = 0; i < made.size(); ++i) {
         Source source = *made.strongest(i);
-        const FieldPlace& place = fields[std::size_t(source.exemplar)].place;
+        const FieldPlace& place = places[std::size_t(source.exemplar)];
         source.position = asWritten(place.corner + source.position * place.step);
         source.scale = float(scale);
         sources.add(made.voxels()[i] + corner, source);
@@ -70,31 +61,6 @@ GridPtr directionGrid(const FrameField& frames, const FieldPlace& place, const I
         grid->tree().setValueOn(toCoord(shell.table[i] + box.min), openvdb::Vec3f(toVec(world)));
     }
     return grid;
-}
-
-constexpr int kDraftLevels = 2;  // of its half resolution, so that the target's band is no wider than else
-
-VolumeAnalogyResult searched(const SearchFields& search, const FrameField& frames,
-                             const std::vector<AnalogyModelPair>& pairs, const AnalogyOptions& options,
-                             const RunContext& ctx) {
-    std::vector<FrameField> pairFrames;
-    for (std::size_t p = 0; p < pairs.size(); ++p)
-        pairFrames.push_back(framesOf(search.pairs[p].plain, search.pairs[p].place,
-                                      directionOfPair(*pairs[p].plain, options.exemplarDirection), "the pair",
-                                      "exemplarDirection", ctx));
-    std::vector<AnalogyPair> given;
-    for (std::size_t p = 0; p < pairs.size(); ++p)
-        given.push_back(
-            {search.pairs[p].plain, search.pairs[p].textured, &pairFrames[p], search.pairs[p].inner});
-    VolumeAnalogyOptions synthesis = options.synthesis;
-    if (options.draft && synthesis.levels == 0)
-        synthesis.levels = std::min(kDraftLevels, usefulLevels(given, ctx));
-    if (options.draft) {
-        if (synthesis.sweeps > VolumeAnalogyOptions().sweeps)
-            message(ctx, MessageLevel::Note, "a draft takes one sweep, not the `sweeps` asked for");
-        synthesis.sweeps = 1;
-    }
-    return makeAnalogy(given, *search.target, frames, synthesis, ctx);
 }
 
 // Strength times mask times what thin parts bear; empty: `strength` everywhere.
@@ -117,29 +83,6 @@ BrickField weightOver(const LevelSet& target, const IndexBox& box, const BrickFi
     return weight.box().empty() ? mask : times(mask, 1);
 }
 
-// How far textures reach from the plain surfaces and how deep they dig, -1 if a pair's does so at all depths.
-struct TextureDepth {
-    float reach = 0, dig = 0;
-};
-
-TextureDepth depthOf(const std::vector<PairFields>& fields, double scale) {
-    TextureDepth depth;
-    bool through = false;
-    for (const PairFields& pair : fields) {
-        const float reach = reachOf(*pair.plain, *pair.textured), dig = digOf(*pair.plain, *pair.textured);
-        if (reach > float(kMostReach - 1) * float(std::min(scale, 1.0)))
-            throw Error(ErrorCode::Unusable, "the texture reaches more than " +
-                                                 std::to_string(kMostReach - 1) +
-                                                 " voxels from the plain model's surface; use larger voxels, "
-                                                 "or check that the two models of the pair coincide");
-        depth.reach = std::max(depth.reach, reach);
-        depth.dig = std::max(depth.dig, dig);
-        through = through || dig < 0;
-    }
-    if (through) depth.dig = -1;
-    return depth;
-}
-
 // [voxels] of a draft's target at its own resolution, which is not searched: farther than the texture reaches
 // and digs.
 int nearBand(const TextureDepth& depth) {
@@ -147,27 +90,17 @@ int nearBand(const TextureDepth& depth) {
     return int(std::ceil(std::max(depth.reach, depth.dig) + kMore));
 }
 
-std::shared_ptr<const BrickField> halvedTarget(const LevelSet& target, const IndexBox& box,
-                                               const CutFaces& cut, float band, const RunContext& ctx) {
-    const KnownBand known = gatherKnownBand(*target.grid, box, cut, 2 * reachToWiden(band), ctx);
-    return std::make_shared<const BrickField>(widenBandCoarse(known, band, ctx));
-}
-
-AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const LevelSet& target,
-                          const AnalogyOptions& options, const RunContext& ctx) {
+AnalogyResult madeAnalogy(const PreparedPairs& pairs, const LevelSet& target, const AnalogyOptions& options,
+                          const RunContext& ctx) {
     AnalogyResult result;
     const MappedTarget mapped{levelSetHash(*target.grid), voxelSizeOf(*target.grid), target.domainRecorded};
-    std::vector<PairFields> fields;
-    Stage reading(ctx, "distances around the surfaces", pairs.size() + 1);
-    for (const AnalogyModelPair& pair : pairs) {
-        fields.push_back(gatherPair(pair, options.scale, ctx));
-        reading.advance();
-    }
-    const TextureDepth depth = depthOf(fields, options.scale);
+    const TextureDepth& depth = pairs.depth;
     result.reach = depth.reach;
+    Stage reading(ctx, "distances around the target's surface", 1);
     const int most = options.draft ? kDraftLevels : 3;
-    const int levels = options.synthesis.levels == 0 ? most : std::clamp(options.synthesis.levels, 1, 6);
-    const int radius = (options.synthesis.half + 2) << (levels - 1 + int(options.draft));
+    const VolumeAnalogyOptions& synthesis = pairs.options.synthesis;
+    const int levels = synthesis.levels == 0 ? most : std::clamp(synthesis.levels, 1, 6);
+    const int radius = (synthesis.half + 2) << (levels - 1 + int(options.draft));
     const int band = int(std::ceil(result.reach)) + radius + 2;
     const CutFaces cut = facesTouched(target);
     const IndexBox box = grownBox(target.domain, cut, band);
@@ -179,17 +112,18 @@ AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const Leve
     const int near = options.draft ? std::min(band, nearBand(depth)) : band;
     const auto plain =
         std::make_shared<const BrickField>(gatherWideBand(*target.grid, box, cut, float(near), ctx));
-    const auto searchedTarget = options.draft ? halvedTarget(target, box, cut, float(band) / 2, ctx) : plain;
+    const auto searched = options.draft ? halvedTarget(target, box, cut, float(band), ctx) : plain;
     reading.advance();
     const FieldPlace place{target.grid.get(), {double(box.min.x), double(box.min.y), double(box.min.z)}, 1};
-    const SearchFields search = searchFields(fields, searchedTarget, place, options.draft, ctx);
+    FieldPlace searchedPlace = place;
+    if (options.draft) searchedPlace = {place.like, place.corner + Vec3d{0.5, 0.5, 0.5}, 2};
     const FrameField frames =
-        framesOf(search.target, search.place, options.direction, "the target", "direction", ctx);
-    VolumeAnalogyResult made = searched(search, frames, pairs, options, ctx);
+        framesOf(searched, searchedPlace, options.direction, "the target", "direction", ctx);
+    VolumeAnalogyResult made = makeAnalogy(*pairs.trained, *searched, frames, ctx);
     if (options.draft) made = refinedDraft(made, plain->box());
-    SourceMap& map = result.map = mapOf(made, fields, pairs, options.scale);
+    SourceMap& map = result.map = mapOf(made, pairs, options.scale);
     map.target = mapped;
-    map.elements = placed(made.sources, search.pairs, box.min, options.scale);
+    map.elements = placed(made.sources, pairs.places, box.min, options.scale);
     map.targetBox = box;
     map.targetDomain = target.domain;
     map.cut = cut;
@@ -200,9 +134,9 @@ AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const Leve
         weightOver(target, box, *plain, depth.dig, depth.reach, float(near - 1), options, ctx);
     std::vector<ExemplarSamples> samples;
     std::vector<const LevelSet*> textured;
-    for (std::size_t p = 0; p < pairs.size(); ++p) {
-        samples.push_back({fields[p].textured, fields[p].place.corner, options.scale});
-        textured.push_back(pairs[p].textured);
+    for (std::size_t p = 0; p < pairs.fields.size(); ++p) {
+        samples.push_back({pairs.fields[p].textured, pairs.fields[p].place.corner, options.scale});
+        textured.push_back(&pairs.textured[p]);
     }
     result.model = analogyThroughMap(map, 1, samples, *plain, target, result.reach, ctx);
     result.model.attributes = analogyAttributes(map, textured, *plain, target, *result.model.grid, ctx);
@@ -215,15 +149,12 @@ AnalogyResult madeAnalogy(const std::vector<AnalogyModelPair>& pairs, const Leve
     }
     result.levels = std::move(made.levels);
     for (const Vec3f& p : frames.directions().singularities)
-        result.singularities.push_back(search.place.toWorld(cast<double>(p)));
+        result.singularities.push_back(searchedPlace.toWorld(cast<double>(p)));
     result.cut = frames.sweep().cut;
     return result;
 }
 
-}  // namespace
-
-void validate(const AnalogyOptions& options, const std::vector<AnalogyModelPair>& pairs,
-              const LevelSet& target) {
+void requireSettings(const AnalogyOptions& options) {
     requireOption(options.scale >= 0.25 && options.scale <= 4, "scale", roundedText(options.scale, 6),
                   "from 0.25 to 4");
     requireOption(options.strength >= 0 && options.strength <= 1, "strength",
@@ -232,6 +163,9 @@ void validate(const AnalogyOptions& options, const std::vector<AnalogyModelPair>
     requireHalfWidth(double(options.halfWidth));
     requireDirection(options.direction, "direction");
     requireDirection(options.exemplarDirection, "exemplarDirection");
+}
+
+void requirePairs(const std::vector<AnalogyModelPair>& pairs) {
     requireOption(!pairs.empty(), "pairs", "0", "at least one");
     for (std::size_t p = 0; p < pairs.size(); ++p) {
         const std::string what = pairs.size() > 1 ? "pair " + std::to_string(p + 1) : "the pair";
@@ -239,12 +173,39 @@ void validate(const AnalogyOptions& options, const std::vector<AnalogyModelPair>
         requireModel(pairs[p].textured, what + ", textured");
         requireOnePlace(pairs[p]);
     }
+}
+
+}  // namespace
+
+void validate(const AnalogyOptions& options, const std::vector<AnalogyModelPair>& pairs,
+              const LevelSet& target) {
+    requireSettings(options);
+    requirePairs(pairs);
     requireModel(&target, "the target");
 }
 
 AnalogyResult makeAnalogyModel(const std::vector<AnalogyModelPair>& pairs, const LevelSet& target,
                                const AnalogyOptions& options, const RunContext& ctx) {
     validate(options, pairs, target);
+    return withThreads(
+        ctx, [&] { return madeAnalogy(*preparedPairs(pairs, options, ctx), target, options, ctx); });
+}
+
+std::shared_ptr<const PreparedPairs> preparePairs(const std::vector<AnalogyModelPair>& pairs,
+                                                  const AnalogyOptions& options, const RunContext& ctx) {
+    requireSettings(options);
+    requirePairs(pairs);
+    return withThreads(ctx, [&] { return preparedPairs(pairs, options, ctx); });
+}
+
+AnalogyResult makeAnalogyModel(const PreparedPairs& pairs, const LevelSet& target,
+                               const AnalogyOptions& options, const RunContext& ctx) {
+    requireSettings(options);
+    requireModel(&target, "the target");
+    requireOption(options.scale == pairs.options.scale, "scale", roundedText(options.scale, 6),
+                  roundedText(pairs.options.scale, 6) + ", as when the pairs were prepared");
+    requireOption(options.draft == pairs.options.draft, "draft", options.draft ? "true" : "false",
+                  "as when the pairs were prepared");
     return withThreads(ctx, [&] { return madeAnalogy(pairs, target, options, ctx); });
 }
 

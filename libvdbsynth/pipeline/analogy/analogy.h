@@ -6,6 +6,7 @@
 #include "libvdbsynth/vdb/level_set.h"
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -65,6 +66,19 @@ struct AnalogyResult {
 /// EmptyInput, Memory, Cancelled
 /// @par Cost    see makeAnalogy    @par Repeats same bits for any number of threads
 AnalogyResult makeAnalogyModel(const std::vector<AnalogyModelPair>& pairs, const LevelSet& target,
+                               const AnalogyOptions& options, const RunContext& ctx = {});
+
+/// Pairs with all that does not depend on a target: distances, directions, features and their index.
+struct PreparedPairs;
+/// Prepares pairs for any number of targets, such as the frames of a sequence. The grids of the models are
+/// shared and must not change.
+/// @param options  `synthesis`, `exemplarDirection`, `scale` and `draft` are read
+/// @throw Error as makeAnalogyModel, for the pairs   @par Repeats same bits for any number of threads
+std::shared_ptr<const PreparedPairs> preparePairs(const std::vector<AnalogyModelPair>& pairs,
+                                                  const AnalogyOptions& options, const RunContext& ctx = {});
+/// The same result as from the pairs themselves. What preparePairs read of the options is as it was then.
+/// @throw Error as above; InvalidOption (another `scale` or `draft` than the pairs were prepared with)
+AnalogyResult makeAnalogyModel(const PreparedPairs& pairs, const LevelSet& target,
                                const AnalogyOptions& options, const RunContext& ctx = {});
 
 }  // namespace vdbsynth

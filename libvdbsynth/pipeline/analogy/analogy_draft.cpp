@@ -3,25 +3,28 @@
 #include "libvdbsynth/math/affine.h"
 #include "libvdbsynth/math/lattice.h"
 #include "libvdbsynth/pipeline/analogy/analogy_steps.h"
+#include "libvdbsynth/vdb/bricks.h"
 
 #include <utility>
 
 namespace vdbsynth {
 
-SearchFields searchFields(const std::vector<PairFields>& fields, std::shared_ptr<const BrickField> target,
-                          const FieldPlace& place, bool draft, const RunContext& ctx) {
-    if (!draft) return {std::move(target), place, fields};
-    SearchFields search;
-    search.target = std::move(target);
-    search.place = {place.like, place.corner + Vec3d{0.5, 0.5, 0.5}, 2};
+std::vector<PairFields> halvedPairs(const std::vector<PairFields>& fields, const RunContext& ctx) {
+    std::vector<PairFields> halved;
     for (PairFields pair : fields) {
         pair.plain = std::make_shared<const BrickField>(scaledField(*pair.plain, 0.5, ctx));
         pair.textured = std::make_shared<const BrickField>(scaledField(*pair.textured, 0.5, ctx));
         pair.inner = pair.plain->box();
         pair.place.step *= 2;
-        search.pairs.push_back(std::move(pair));
+        halved.push_back(std::move(pair));
     }
-    return search;
+    return halved;
+}
+
+std::shared_ptr<const BrickField> halvedTarget(const LevelSet& target, const IndexBox& box,
+                                               const CutFaces& cut, float band, const RunContext& ctx) {
+    const KnownBand known = gatherKnownBand(*target.grid, box, cut, 2 * reachToWiden(band / 2), ctx);
+    return std::make_shared<const BrickField>(widenBandCoarse(known, band / 2, ctx));
 }
 
 VolumeAnalogyResult refinedDraft(const VolumeAnalogyResult& draft, const IndexBox& target) {

@@ -40,17 +40,33 @@ PairFields gatherPair(const AnalogyModelPair& pair, double scale, const RunConte
 /// A field in larger or smaller voxels; distances are in its own.
 BrickField scaledField(const BrickField& field, double scale, const RunContext& ctx);
 
-/// What a search runs on: the target and the pairs as fields.
-struct SearchFields {
-    std::shared_ptr<const BrickField> target;
-    FieldPlace place;
-    std::vector<PairFields> pairs;
+inline constexpr int kDraftLevels = 2;  ///< of its half resolution: its band is no wider than else
+
+/// How far textures reach from the plain surfaces and how deep they dig [voxels].
+struct TextureDepth {
+    float reach = 0;
+    float dig = 0;  ///< -1 if a pair's does so at all depths
 };
 
-/// The target's field and the pairs' as they are or, for a draft, the pairs at half the scale.
-/// @param target  for a draft at half the resolution   @param place  of the whole resolution
-SearchFields searchFields(const std::vector<PairFields>& fields, std::shared_ptr<const BrickField> target,
-                          const FieldPlace& place, bool draft, const RunContext& ctx);
+struct PreparedPairs {
+    AnalogyOptions options;                 ///< that they were prepared with
+    std::vector<LevelSet> plain, textured;  ///< of each pair
+    std::vector<PairFields> fields;         ///< at the target's resolution
+    std::vector<FieldPlace> places;         ///< of the fields that are searched
+    TextureDepth depth;
+    std::shared_ptr<const TrainedPairs> trained;
+};
+
+/// preparePairs, of valid options and pairs.
+std::shared_ptr<const PreparedPairs> preparedPairs(const std::vector<AnalogyModelPair>& pairs,
+                                                   const AnalogyOptions& options, const RunContext& ctx);
+
+/// The pairs as a draft searches them, at half the scale.
+std::vector<PairFields> halvedPairs(const std::vector<PairFields>& fields, const RunContext& ctx);
+
+/// The target's distances up to `band` [voxels] as a draft searches them, in voxels of twice the size.
+std::shared_ptr<const BrickField> halvedTarget(const LevelSet& target, const IndexBox& box,
+                                               const CutFaces& cut, float band, const RunContext& ctx);
 
 /// The sources of a draft's voxels for the eight of the target that each stands for, still in voxels of the
 /// draft's pairs.

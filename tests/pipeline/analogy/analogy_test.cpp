@@ -189,6 +189,12 @@ TEST_CASE("makeAnalogyModel: a draft has the texture, repeats from its map, same
     CHECK(draft.levels.back().voxels < full.levels.back().voxels / 4);
     const LevelSet repeated = repeatMap(draft.map, {&pair.textured, &target});
     CHECK(levelSetHash(*repeated.grid) == levelSetHash(*draft.model.grid));
+    // Sweeps asked for are not taken, and that is said.
+    options.synthesis.sweeps = 4;
+    test::Said said;
+    CHECK(levelSetHash(*applied(pair, target, options, said.ctx).model.grid) ==
+          levelSetHash(*draft.model.grid));
+    CHECK(said.noted("a draft takes one sweep"));
 }
 
 TEST_CASE("makeAnalogyModel: hollowing makes a shell of the pair's thickness, a valid level set",
@@ -290,6 +296,40 @@ TEST_CASE("makeAnalogyModel: the same bits for any threads", "[pipeline][tsan]")
     four.threads = 4;
     CHECK(levelSetHash(*applied(pair, target, {}, one).model.grid) ==
           levelSetHash(*applied(pair, target, {}, four).model.grid));
+}
+
+TEST_CASE("makeAnalogyModel: prepared pairs give each target what the pairs themselves do",
+          "[pipeline][property]") {
+    const ModelPair pair = pairOf("dilation", 48);
+    MakeOptions smaller = makeOptions("three-tori", 48);
+    AnalogyOptions options;
+    options.direction = direction("around:z");
+    for (const bool draft : {false, true}) {
+        options.draft = draft;
+        options.scale = draft ? 0.8 : 1;
+        const auto prepared = preparePairs({{&pair.plain, &pair.textured}}, options);
+        for (const LevelSet& target : {makeModel(smaller), tori()}) {
+            const AnalogyResult shared = makeAnalogyModel(*prepared, target, options);
+            const AnalogyResult alone = applied(pair, target, options);
+            CHECK(levelSetHash(*shared.model.grid) == levelSetHash(*alone.model.grid));
+            CHECK(shared.map.elements.size() == alone.map.elements.size());
+        }
+        AnalogyOptions other = options;
+        other.scale = 0.5;
+        CHECK(test::contains(test::thrownBy([&] { makeAnalogyModel(*prepared, tori(), other); }).message,
+                             "as when the pairs were prepared"));
+        other = options;
+        other.draft = !draft;
+        CHECK(test::thrownBy([&] { makeAnalogyModel(*prepared, tori(), other); }).code ==
+              int(ErrorCode::InvalidOption));
+    }
+    CHECK(test::thrownBy([&] { preparePairs({}, options); }).code == int(ErrorCode::InvalidOption));
+    const std::atomic<bool> stop{true};
+    RunContext stopped;
+    stopped.cancel = &stop;
+    CHECK(test::thrownBy([&] {
+              preparePairs({{&pair.plain, &pair.textured}}, options, stopped);
+          }).code == int(ErrorCode::Cancelled));
 }
 
 TEST_CASE("makeAnalogyModel: every refusal says what to do", "[pipeline]") {

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Makes pictures of docs/pictures again with a built program, from models that `make` makes.
 # Usage: make_pictures.sh [PROGRAM [NAME...]]; NAME is synth, synthesis, analogies, shallow, patches, relief, texturing, render, fog, direction or
-# poses, all by default. Not made here: controls.png and analogy_directions.png, whose maps and sponge were not kept.
+# poses, all by default. Not made here: those of Blender (blender_pictures.sh), and controls.png and analogy_directions.png, whose maps and sponge were not kept.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 program=$(realpath "${1:-$root/build/release/tools/vdb_synth/vdb_synth}")

@@ -6,10 +6,10 @@ build=(g++ cmake ninja-build ccache libopenvdb-dev libboost-iostreams-dev libtbb
        libtiff-dev libtinygltf-dev libxxhash-dev libyaml-cpp-dev zlib1g-dev)
 test=(catch2 python3 procps)
 # Rivals to compare with, programs that must read what we write, fuzzers, linters, a cluster's daemons, what the Python
-# module is built with.
-all=(libopenvdb-tools python3-openvdb python3-numpy python3-scipy python3-skimage chromium blender clang clang-format libclang-rt-14-dev
+# module is built with, what builds a container, a screen without a screen.
+all=(libopenvdb-tools python3-openvdb python3-numpy python3-scipy python3-skimage buildah chromium blender clang clang-format libclang-rt-14-dev
      debootstrap dpkg-dev file fish groff libboost-python-dev lintian man-db mandoc munge pybind11-dev python3-dev slurm-client slurmctld
-     slurmd zsh)
+     slurmd xvfb zsh)
 
 # Rivals of the benchmarks.
 bench=(libbenchmark-dev libfaiss-dev libfftw3-dev libopenblas-dev libopenvdb-tools python3)

@@ -147,7 +147,7 @@ def volume(name):
 
 
 def draw_methods():
-    """More of a foam, a torus coloured like bricks, a woven sheet."""
+    """More of a foam, a torus coloured like bricks, a sheet of flowers."""
     foam = run("synth", volume("foam"), size="2x,2x,1x")
     dress(foam, GOLD)
     bpy.ops.mesh.primitive_torus_add(major_radius=1.0, minor_radius=0.42, major_segments=260, minor_segments=110)
@@ -155,9 +155,8 @@ def draw_methods():
     bricks = run("texture", ring, image_file=path("bricks.png"), direction="around:z", scale=1.0)
     dress(bricks)
     bricks.rotation_euler = (math.radians(35), 0, 0)
-    sheet = run("patch", volume("weave"), size="2x,2x")
+    sheet = run("patch", volume("flowers"), size="2x,2x")
     dress(sheet, MINT)
-    sheet.rotation_euler = (math.radians(35), 0, 0)
     shown = [foam, bricks, sheet]
     for number, one in enumerate(shown):
         place(one, (2.6 * number, 0), 2.4)

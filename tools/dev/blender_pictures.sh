@@ -37,7 +37,7 @@ for name in "${names[@]}"; do
       keep ;;
     methods)
       run make foam foam.vdb --seed 1
-      run make weave weave.vdb --seed 1
+      run make flowers flowers.vdb --seed 1
       "$root/tools/dev/make_sample.py" bricks bricks.png 128
       inside -b
       keep ;;

@@ -26,6 +26,25 @@ def write_ply(path, points, faces, colours=None):
             file.write(bytes([len(face)]) + np.asarray(face, dtype="<i4").tobytes())
 
 
+def write_off(path, points, faces):
+    """points [n, 3]; faces: lists of vertex numbers. For commands that take a .ply as points."""
+    with open(path, "w", encoding="ascii") as file:
+        file.write(f"OFF\n{len(points)} {len(faces)} 0\n")
+        file.writelines("%.9g %.9g %.9g\n" % tuple(point) for point in points)
+        file.writelines(f"{len(face)} {' '.join(str(corner) for corner in face)}\n" for face in faces)
+
+
+def read_off(path):
+    """(points [n, 3], faces) of an .off as the program writes it; colours are left out."""
+    with open(path, encoding="ascii") as file:
+        if file.readline().strip() not in ("OFF", "COFF"):
+            raise ValueError(f"{path}: is no .off")
+        count, faces, _ = (int(word) for word in file.readline().split())
+        points = np.array([file.readline().split()[:3] for _ in range(count)], dtype=np.float64).reshape(-1, 3)
+        rows = [[int(word) for word in file.readline().split()] for _ in range(faces)]
+    return points, [tuple(row[1:1 + row[0]]) for row in rows]
+
+
 def read_ply(path):
     """(points [n, 3], faces, {attribute: [n, channels]}) of a binary or ASCII little-endian .ply as the program writes it."""
     with open(path, "rb") as file:

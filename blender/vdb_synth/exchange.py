@@ -9,8 +9,20 @@ from . import vdbsynth_ply as ply
 SETTINGS = "vdb_synth"  # custom property of results: the run that made them, as JSON
 
 
+def linear_of(colours):
+    """Light, which Blender's colours are, of values as pictures and .ply files hold them (sRGB); [n, 3] from 0 to 1."""
+    colours = np.clip(colours, 0.0, 1.0)
+    return np.where(colours <= 0.04045, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
+
+
+def srgb_of(light):
+    """The inverse of linear_of; [n, 3], cut to 0 to 1."""
+    light = np.clip(light, 0.0, 1.0)
+    return np.where(light <= 0.0031308, light * 12.92, 1.055 * light ** (1 / 2.4) - 0.055)
+
+
 def point_colours(mesh):
-    """[n, 3] from 0 to 1, or None; colours of corners are averaged to points."""
+    """[n, 3] of light from 0 to 1, or None; colours of corners are averaged to points."""
     layer = mesh.color_attributes.active_color if len(mesh.color_attributes) else None
     if layer is None:
         return None
@@ -39,13 +51,17 @@ def export_mesh(context, scene_object, path):
         faces = [tuple(polygon.vertices) for polygon in mesh.polygons]
         if np.linalg.det(matrix[:3, :3]) < 0:  # a mirrored object turns its faces inside out
             faces = [face[::-1] for face in faces]
-        ply.write_ply(path, points, faces, point_colours(mesh))
+        if path.endswith(".off"):
+            ply.write_off(path, points, faces)
+            return
+        light = point_colours(mesh)
+        ply.write_ply(path, points, faces, None if light is None else srgb_of(light))
     finally:
         evaluated.to_mesh_clear()
 
 
-def export_object(context, scene_object, folder, name):
-    """Writes what an object is made of; returns the path. Volumes are read from their own file. Raises ValueError."""
+def export_object(context, scene_object, folder, name, kind="ply"):
+    """Writes what an object is made of, a mesh as .ply or .off; returns the path. Volumes are read from their own file. Raises ValueError."""
     if scene_object.type == "VOLUME":
         path = bpy.path.abspath(scene_object.data.filepath)
         if not os.path.isfile(path):
@@ -53,19 +69,19 @@ def export_object(context, scene_object, folder, name):
         return path
     if scene_object.type not in {"MESH", "CURVE", "SURFACE", "FONT", "META"}:
         raise ValueError(f"{scene_object.name}: is a {scene_object.type.lower()}; select a mesh or a volume")
-    path = os.path.join(folder, name + ".ply")
+    path = os.path.join(folder, f"{name}.{kind}")
     export_mesh(context, scene_object, path)
     return path
 
 
 def import_mesh(path, name):
-    points, faces, attributes = ply.read_ply(path)
+    points, faces, attributes = (*ply.read_off(path), {}) if path.endswith(".off") else ply.read_ply(path)
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata(points.tolist(), [], faces)
     colours = ply.colours_of(attributes)
     if colours is not None:
         layer = mesh.color_attributes.new(name="Col", type="FLOAT_COLOR", domain="POINT")
-        layer.data.foreach_set("color", np.concatenate([colours, np.ones((len(colours), 1))], axis=1).astype(np.float32).ravel())
+        layer.data.foreach_set("color", np.concatenate([linear_of(colours), np.ones((len(colours), 1))], axis=1).astype(np.float32).ravel())
     mesh.validate()
     mesh.update()
     return bpy.data.objects.new(name, mesh)

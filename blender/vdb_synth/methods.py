@@ -14,10 +14,13 @@ class Choice:
 
 
 class Method:
-    """`others` are the inputs beside the selected object, in the order of the command line; "object" stands for the selected one."""
+    """`others` are the inputs beside the selected object, in the order of the command line; "object" stands for the selected one.
+    `mesh` is the kind of file that meshes go and come as: .off, without colours, where the program takes .ply as points.
+    `of_mesh` are options that a selected mesh needs."""
 
-    def __init__(self, command, label, says, inputs, options, result="model"):
+    def __init__(self, command, label, says, inputs, options, result="model", mesh="ply", of_mesh=None):
         self.command, self.label, self.says, self.inputs, self.options, self.result = command, label, says, inputs, options, result
+        self.mesh, self.of_mesh = mesh, of_mesh or {}
 
     @property
     def others(self):
@@ -47,12 +50,12 @@ METHODS = [
         Choice("tile", "flag", False, "the sheet continues at its opposite sides"),
         Choice("draft", "flag", False, "a quick look"),
         Choice("voxel-size", "real", 0.0, "voxels of the result (world); 0: the program's choice", 0.0, 1e9),
-    ]),
+    ], mesh="off"),
     Method("texture", "Colour by Image", "Colours the selected mesh like an image", ["object", "image"], [
         SCALE, DIRECTION,
         Choice("coherence", "real", 0.0, "preference for sources that continue a neighbour's; 0: the program's choice", 0.0, 100.0),
         Choice("draft", "flag", False, "a quick look"),
-    ]),
+    ], of_mesh={"as": "mesh"}),
     Method("relief", "Relief", "Takes the relief off a sample and grows it on the selected model", ["sample", "object"], [
         RESOLUTION, DIRECTION, SCALE,
         Choice("strength", "real", 1.0, "height of the relief, relative to the sample's", 0.0, 10.0),

@@ -33,10 +33,10 @@ def values_of(settings, one):
 def input_path(context, settings, one, role, target, folder):
     """A file for one input: the selected object, else the picked object, else the picked file."""
     if role == "object":
-        return exchange.export_object(context, target, folder, "selected")
+        return exchange.export_object(context, target, folder, "selected", one.mesh)
     picked = getattr(settings, role + "_object", None)
     if picked is not None:
-        return exchange.export_object(context, picked, folder, role)
+        return exchange.export_object(context, picked, folder, role, one.mesh)
     path = bpy.path.abspath(getattr(settings, role + "_file"))
     if not path:
         raise ValueError(f"{one.label}: choose {role.replace('_', ' ')}, an object or a file")
@@ -71,7 +71,9 @@ class VDBSYNTH_OT_run(bpy.types.Operator):
             options = methods.options_of(one, values, seed)
             if all(path.endswith(".vdb") for path in inputs[-1:]):
                 options.pop("resolution", None)  # a volume has its voxels
-            self.result = os.path.join(self.folder, "result." + ("json" if one.result == "report" else "vdb" if self.settings.as_volume else "ply"))
+            if self.target.type != "VOLUME":
+                options.update(one.of_mesh)
+            self.result = os.path.join(self.folder, "result." + ("json" if one.result == "report" else "vdb" if self.settings.as_volume else one.mesh))
             if one.result == "report":
                 options = {}
             self.job = Job(one.command, inputs, [self.result], options, program(), self.folder)

@@ -97,18 +97,24 @@ def check_texture():
     target = torus()
     settings("texture").image_file = path("stripes.png")
     result, made = run("texture")
-    assert result == {"FINISHED"}, result
+    assert result == {"FINISHED"} and len(made.data.polygons) >= len(target.data.polygons), (result, len(made.data.polygons))
     layer = made.data.color_attributes[0]
     values = np.zeros(len(layer.data) * 4, dtype=np.float32)
     layer.data.foreach_get("color", values)
     red = values.reshape(-1, 4)[:, 0]
     assert red.mean() > 0.5, red.mean()
-    # Colours go out again with the mesh.
-    select(made)
+    # Blender's colours are light: half as an image holds it is a fifth of it. They go out again with the mesh as they came in.
+    srgb = np.zeros(len(layer.data) * 4, dtype=np.float32)
+    layer.data.foreach_get("color_srgb", srgb)
     from vdb_synth import exchange, vdbsynth_ply as ply
+    ply.write_ply(path("grey.ply"), np.eye(3), [(0, 1, 2)], np.full((3, 3), 128 / 255))
+    grey = exchange.import_mesh(path("grey.ply"), "grey").data.color_attributes[0].data[0]
+    assert abs(grey.color[0] - 0.2159) < 1e-3 and abs(grey.color_srgb[0] - 128 / 255) < 1e-3, tuple(grey.color)
+    select(made)
     exchange.export_mesh(bpy.context, made, path("out.ply"))
     points, faces, attributes = ply.read_ply(path("out.ply"))
-    assert len(points) == len(made.data.vertices) and ply.colours_of(attributes) is not None
+    assert len(points) == len(made.data.vertices)
+    assert np.abs(ply.colours_of(attributes) - srgb.reshape(-1, 4)[:, :3]).max() < 2 / 255
     target.hide_set(False)
 
 
@@ -132,7 +138,13 @@ def check_patch():
     select(volume)
     settings("patch").size = "2x,2x"
     result, made = run("patch")
-    assert result == {"FINISHED"} and len(made.data.vertices) > 1000
+    assert result == {"FINISHED"} and len(made.data.polygons) > 1000, (result, len(made.data.polygons))
+    # A mesh goes out with its faces.
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=20, y_subdivisions=20, size=20)
+    sheet = bpy.context.active_object
+    sheet.modifiers.new("thick", "SOLIDIFY").thickness = 1
+    result, made = run("patch")
+    assert result == {"FINISHED"} and len(made.data.polygons) > 100, (result, len(made.data.polygons))
 
 
 def check_compare():

@@ -47,6 +47,10 @@ class Ply(unittest.TestCase):
                 self.assertTrue(np.allclose(back, points))
                 self.assertEqual([tuple(face) for face in read], faces)
                 self.assertTrue(np.allclose(ply.colours_of(attributes), np.clip(colours, 0, 1), atol=1 / 255))
+                ply.write_off(path, points, faces)
+                back, read = ply.read_off(path)
+                self.assertTrue(np.allclose(back, points))
+                self.assertEqual(read, faces)
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "plain.ply")
             ply.write_ply(path, points, [(0, 1, 2)])

@@ -51,9 +51,11 @@ add_cli_test(demo_build_test Demo Each)
 set_tests_properties("cli: demo_build_test Demo" "cli: demo_build_test Each" PROPERTIES ENVIRONMENT "${CLI_ENVIRONMENT};VDBSYNTH_BUILD=${PROJECT_BINARY_DIR}")
 set_tests_properties("cli: demo_build_test Each" PROPERTIES LABELS "all;slow")
 
-# Packs the build folder and makes a bare Debian: tools/run_tests.sh --all.
-add_cli_test(packages_test Packages)
-set_tests_properties("cli: packages_test Packages" PROPERTIES ENVIRONMENT "${CLI_ENVIRONMENT};VDBSYNTH_BUILD=${PROJECT_BINARY_DIR}" LABELS all)
+# Packs the build folder, makes a bare Debian and builds the container: tools/run_tests.sh --all.
+add_cli_test(packages_test Packages Container)
+set_tests_properties("cli: packages_test Packages" "cli: packages_test Container" PROPERTIES ENVIRONMENT
+                     "${CLI_ENVIRONMENT};VDBSYNTH_BUILD=${PROJECT_BINARY_DIR}" LABELS all)
+set_tests_properties("cli: packages_test Container" PROPERTIES TIMEOUT 1800)
 
 # Full disks, little memory, signals, many jobs: tools/run_tests.sh --all. VDBSYNTH_SIGNALS and VDBSYNTH_SOAK make it long.
 add_cli_test(night_disk_test FullDisk FullDiskOfBatch Folders Memory)

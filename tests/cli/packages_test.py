@@ -124,5 +124,22 @@ class Packages(CliTest):
         self.assertFalse(os.path.exists(root + "/usr/bin/vdb_synth"))
 
 
+class Container(CliTest):
+    def test_it_is_built_and_runs_as_process_1(self):
+        """Of minutes, and not everywhere possible, so VDBSYNTH_CONTAINER asks for it. VDBSYNTH_PACKAGES names a folder of packages."""
+        if not os.environ.get("VDBSYNTH_CONTAINER"):
+            self.skipTest("VDBSYNTH_CONTAINER=1 builds the container")
+        packages = os.environ.get("VDBSYNTH_PACKAGES", "")
+        if not packages:
+            if not BUILD or not shutil.which("cpack"):
+                self.skipTest("VDBSYNTH_BUILD names no build folder, or cpack is absent")
+            packages = self.path("packages")
+            run(SOURCE / "tools/dev/make_packages.sh", "--of", BUILD, packages)
+        said = run(SOURCE / "tools/dev/container.sh", "--packages", packages, timeout=1700).splitlines()
+        if said[-1].startswith("skipped: "):
+            self.skipTest(said[-1])
+        self.assertEqual(said[-1], "built, run as process 1, stopped by SIGTERM with 143")
+
+
 if __name__ == "__main__":
     unittest.main(verbosity=2)

@@ -2,6 +2,7 @@
 # Makes pictures of docs/pictures again with a built program, from models that `make` makes.
 # Usage: make_pictures.sh [PROGRAM [NAME...]]; NAME is synth, synthesis, controls, analogies, shallow, field, patches, relief, texturing, render, fog,
 # direction or poses, all by default. Maps and the cloud need python3-openvdb, joined pictures python3-pil.
+# Those of Blender: blender_pictures.sh.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 program=$(realpath "${1:-$root/build/release/tools/vdb_synth/vdb_synth}")

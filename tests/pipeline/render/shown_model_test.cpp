@@ -67,7 +67,7 @@ TEST_CASE("shownColours: the usual name, a given one, none", "[pipeline]") {
     CHECK_FALSE(shownColours({}, "", "a.vdb"));
     const test::Thrown thrown = test::thrownBy([&] { shownColours(grids, "w", "a.vdb"); });
     CHECK(thrown.code == int(ErrorCode::BadData));
-    CHECK(test::contains(thrown.message, "`colours` w: not in a.vdb, which has v"));
+    CHECK(test::contains(thrown.message, "`color` w: not in a.vdb, which has v"));
 }
 
 TEST_CASE("customaryUp: y for files of modelling programs", "[pipeline]") {

@@ -87,7 +87,8 @@ struct Drawn {
             height = picture.height;
             channels = picture.channels;
             const double bytes = double(count) * double(picture.pixels.size());
-            requireMemory(ctx, bytes, "an array of " + std::to_string(count) + " pictures",
+            requireMemory(ctx, bytes,
+                          "an array of " + std::to_string(count) + (count == 1 ? " picture" : " pictures"),
                           "draw fewer or smaller ones");
             pixels.reserve(std::size_t(count) * picture.pixels.size());
         }

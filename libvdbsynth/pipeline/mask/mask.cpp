@@ -87,12 +87,12 @@ void validate(const MaskOptions& options) {
     const double voxel = voxelSizeOf(options);
     requireOption(voxel > 0 && voxel < 1e30, "voxelSize", roundedText(voxel, 6), "above 0 (world)");
     if (options.kind == MaskKind::Box) {
-        requireFields(options.box.has_value(), options.kind, "`box`: i,j,k,I,J,K, both corners inclusive");
+        requireFields(options.box.has_value(), options.kind, "`box`, the first and the last voxel");
         requireBox(*options.box, "box");
     } else if (options.kind == MaskKind::Ball) {
         requireBall(options);
     } else if (options.kind == MaskKind::Range) {
-        requireFields(options.range.has_value(), options.kind, "`range`: the lowest and the highest value");
+        requireFields(options.range.has_value(), options.kind, "`range`, the lowest and the highest value");
         const auto [low, high] = *options.range;
         requireOption(low <= high, "range", roundedText(low, 6) + "," + roundedText(high, 6),
                       "two numbers, the lower one first");

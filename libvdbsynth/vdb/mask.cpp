@@ -159,7 +159,7 @@ GridPtr boxMask(const IndexBox& box, double voxelSize) {
     return mask;
 }
 
-GridPtr ballMask(const Vec3d& centre, double radius, double voxelSize) {
+GridPtr ballMask(const Vec3d& centre, double radius, double voxelSize, const RunContext& ctx) {
     requireVoxelSize(voxelSize);
     requireOption(radius > 0 && radius < 1e4 * voxelSize, "radius", roundedText(radius, 6),
                   "above 0 (world) and under ten thousand voxels");
@@ -172,17 +172,31 @@ GridPtr ballMask(const Vec3d& centre, double radius, double voxelSize) {
         around.min[axis] = int(std::ceil(c[axis] - r));
         around.max[axis] = int(std::floor(c[axis] + r));
     }
-    forEachVoxel(around, [&](const Index3& p) {
-        if (length(Vec3d{double(p.x), double(p.y), double(p.z)} - c) <= r)
-            accessor.setValueOn(toCoord(p), true);
-    });
+    if (around.empty()) return mask;
+    Stage stage(ctx, "mask", std::size_t(around.size().x));
+    for (int x = around.min.x; x <= around.max.x; ++x) {
+        forEachVoxel({{x, around.min.y, around.min.z}, {x, around.max.y, around.max.z}},
+                     [&](const Index3& p) {
+                         if (length(Vec3d{double(p.x), double(p.y), double(p.z)} - c) <= r)
+                             accessor.setValueOn(toCoord(p), true);
+                     });
+        stage.advance();
+    }
     return mask;
 }
 
-GridPtr insideMask(const openvdb::FloatGrid& levelSet) {
-    auto mask = emptyMask(levelSet.transform().copy());
-    for (auto it = levelSet.cbeginValueAll(); it; ++it) {
-        if (*it >= 0) continue;
+namespace {
+
+constexpr std::size_t kBetweenPolls = 4096;  // values of a grid
+
+// Makes active in the mask what `holds` says of a grid's values, of voxels and of tiles.
+template <typename Iterator, typename Holds>
+GridPtr maskOfValues(Iterator it, const openvdb::math::Transform::Ptr& transform, const RunContext& ctx,
+                     const Holds& holds) {
+    auto mask = emptyMask(transform);
+    for (std::size_t n = 0; it; ++it, ++n) {
+        if (n % kBetweenPolls == 0) throwIfCancelled(ctx);
+        if (!holds(*it)) continue;
         if (it.isVoxelValue())
             mask->tree().setValueOn(it.getCoord(), true);
         else
@@ -191,18 +205,18 @@ GridPtr insideMask(const openvdb::FloatGrid& levelSet) {
     return mask;
 }
 
-GridPtr rangeMask(const openvdb::FloatGrid& grid, double minimum, double maximum) {
+}  // namespace
+
+GridPtr insideMask(const openvdb::FloatGrid& levelSet, const RunContext& ctx) {
+    return maskOfValues(levelSet.cbeginValueAll(), levelSet.transform().copy(), ctx,
+                        [](float value) { return value < 0; });
+}
+
+GridPtr rangeMask(const openvdb::FloatGrid& grid, double minimum, double maximum, const RunContext& ctx) {
     requireOption(minimum <= maximum, "minimum", roundedText(minimum, 6),
                   "at most `maximum` " + roundedText(maximum, 6));
-    auto mask = emptyMask(grid.transform().copy());
-    for (auto it = grid.cbeginValueOn(); it; ++it) {
-        if (double(*it) < minimum || double(*it) > maximum) continue;
-        if (it.isVoxelValue())
-            mask->tree().setValueOn(it.getCoord(), true);
-        else
-            mask->fill(it.getBoundingBox(), true, true);
-    }
-    return mask;
+    return maskOfValues(grid.cbeginValueOn(), grid.transform().copy(), ctx,
+                        [&](float value) { return double(value) >= minimum && double(value) <= maximum; });
 }
 
 }  // namespace vdbsynth

@@ -39,11 +39,13 @@ IndexBox activeBox(const openvdb::GridBase& grid);
 
 /// Every voxel of `box`.
 GridPtr boxMask(const IndexBox& box, double voxelSize);
-/// Voxels whose centre is within `radius` of `centre`. [world] @throw Error InvalidOption (`radius`)
-GridPtr ballMask(const Vec3d& centre, double radius, double voxelSize);
-/// Voxels inside a solid.
-GridPtr insideMask(const openvdb::FloatGrid& levelSet);
-/// Active voxels of a float grid with minimum <= value <= maximum.
-GridPtr rangeMask(const openvdb::FloatGrid& grid, double minimum, double maximum);
+/// Voxels whose centre is within `radius` of `centre`. [world]
+/// @throw Error InvalidOption (`radius`), Cancelled
+GridPtr ballMask(const Vec3d& centre, double radius, double voxelSize, const RunContext& ctx = {});
+/// Voxels inside a solid. @throw Error Cancelled
+GridPtr insideMask(const openvdb::FloatGrid& levelSet, const RunContext& ctx = {});
+/// Active voxels of a float grid with minimum <= value <= maximum. @throw Error InvalidOption (`minimum`),
+/// Cancelled
+GridPtr rangeMask(const openvdb::FloatGrid& grid, double minimum, double maximum, const RunContext& ctx = {});
 
 }  // namespace vdbsynth

@@ -1259,6 +1259,23 @@ def make_points(kind: str, *,
     the .ply says its box, for read_patch_source."""
     ...
 
+def mask(kind: Literal['box', 'ball', 'inside', 'range'], model: LevelSet | GridLike | None = None, *,
+        box: Box | None = None,
+        center: Place | None = None,
+        radius: float | None = None,
+        range: float | tuple[float, float] | None = None,
+        voxelSize: float | None = None,
+        seed: int = 0,
+        threads: int = 0,
+        maxMemory: int = 0,
+        onProgress: Callable[[str, int, int], object] | None = None,
+        onMessage: Callable[[str, str], object] | None = None,
+        cancel: Event | None = None) -> Grid:
+    """A mask as a bool Grid named "mask", active and True where it holds. `kind` is 'box' (needs `box`), 'ball' (`center`
+    and `radius`), 'inside' (a LevelSet `model`) or 'range' (`range`, and a LevelSet or a grid of floats, whose active
+    voxels count). A mask of a model has its voxels."""
+    ...
+
 def match(exemplar: LevelSet, query: LevelSet, *,
         block: int = 16,
         at: Index = (0, 0, 0),
@@ -1590,6 +1607,34 @@ def relief_extract(model: LevelSet, *,
         onMessage: Callable[[str, str], object] | None = None,
         cancel: Event | None = None) -> ReliefExtraction:
     """Splits a scan into a smooth base and the relief on it: a ReliefExtraction."""
+    ...
+
+def render(models: LevelSet | GridLike | Sequence[LevelSet | GridLike | Sequence[GridLike]], outputs: Path | Sequence[Path] | None = None, *,
+        size: Sequence[int] = (800, 600),
+        view: Place | None = None,
+        up: Literal['y', 'z'] | None = None,
+        slice: str | tuple[str, float] | None = None,
+        turntable: int = 0,
+        captions: Sequence[str] = (),
+        columns: int = 64,
+        sameScale: bool = False,
+        background: str = 'studio',
+        ground: bool = True,
+        wireframe: bool = False,
+        color: str = '',
+        density: float = 1.0,
+        samples: int = 4,
+        directions: GridLike | None = None,
+        seed: int = 0,
+        threads: int = 0,
+        maxMemory: int = 0,
+        onProgress: Callable[[str, int, int], object] | None = None,
+        onMessage: Callable[[str, str], object] | None = None,
+        cancel: Event | None = None) -> NDArray[Any]:
+    """Draws models side by side: a picture as uint8 [rows, columns, channels], the top row first, red, green, blue and, on
+    a transparent background, opacity (not multiplied into the colours); of a turntable [pictures, rows, columns,
+    channels]. A model is a LevelSet, with its attributes, or fog: a Grid of densities, or a list of it and its other
+    grids, such as Cd. `outputs`: a .png or a list of them, written as well; of a turntable with #### for a picture's number."""
     ...
 
 def repeat(map: SourceMap, inputs: LevelSet | Sequence[LevelSet], *,

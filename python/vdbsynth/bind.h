@@ -22,6 +22,8 @@ void bindTexture(py::module_& module);
 void bindRelief(py::module_& module);
 void bindPatch(py::module_& module);
 void bindCompare(py::module_& module);
+void bindMask(py::module_& module);
+void bindRender(py::module_& module);
 
 /// A copy, which shares the grids: another thread of Python may drop its own meanwhile.
 LevelSet modelFrom(const std::string& name, py::handle value);

@@ -100,6 +100,8 @@ PYBIND11_MODULE(_vdbsynth, module) {
     bindRelief(module);
     bindPatch(module);
     bindCompare(module);
+    bindMask(module);
+    bindRender(module);
     module.def("keywords", keywordList, py::arg("function"),
                "Keywords of a function or method, such as \"synth\" or \"LevelSet.write\": a list of (name, "
                "type, default, text).");

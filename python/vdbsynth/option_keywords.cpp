@@ -570,6 +570,16 @@ void describe(Keywords& keywords, MinimalWallOptions& options) {
                  "above 0, to 1: of the surface's area, the thinnest part that is looked at");
 }
 
+void describe(Keywords& keywords, MaskOptions& options) {
+    // The kind is an argument of its own.
+    keywords.add("box", options.box, "[index] of a box, both corners inclusive");
+    keywords.add("center", options.center, "[world] of a ball");
+    keywords.add("radius", options.radius, "[world] of a ball, above 0");
+    keywords.add("range", options.range,
+                 "lowest and highest value of active voxels; a number: this value only");
+    keywords.add("voxelSize", options.voxelSize, "[world] of a box or a ball, above 0; None: 1");
+}
+
 std::map<std::string, std::vector<Keyword>>& keywordsOfFunctions() {
     static std::map<std::string, std::vector<Keyword>> all;
     return all;

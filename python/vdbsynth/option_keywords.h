@@ -9,12 +9,14 @@
 #include "libvdbsynth/pipeline/convert/outputs.h"
 #include "libvdbsynth/pipeline/fill/fill.h"
 #include "libvdbsynth/pipeline/make/make_points.h"
+#include "libvdbsynth/pipeline/mask/mask.h"
 #include "libvdbsynth/pipeline/match/match.h"
 #include "libvdbsynth/pipeline/patch/patch_onto.h"
 #include "libvdbsynth/pipeline/pose/pose.h"
 #include "libvdbsynth/pipeline/relief/relief.h"
 #include "libvdbsynth/pipeline/relief/relief_bake.h"
 #include "libvdbsynth/pipeline/relief/relief_extract.h"
+#include "libvdbsynth/pipeline/render/render_options.h"
 #include "libvdbsynth/pipeline/repeat/repeat.h"
 #include "libvdbsynth/pipeline/synth/synth.h"
 #include "libvdbsynth/pipeline/texture/texture.h"
@@ -77,6 +79,8 @@ void describe(Keywords& keywords, ReliefOptions& options);
 void describe(Keywords& keywords, ReliefExtractOptions& options);
 void describe(Keywords& keywords, ReliefBakeOptions& options);
 void describe(Keywords& keywords, MinimalWallOptions& options);
+void describe(Keywords& keywords, MaskOptions& options);
+void describe(Keywords& keywords, RenderOptions& options);
 
 /// Fields of an options struct from what a function was given. @throw as Keywords::read
 template <typename... Options>

@@ -474,7 +474,8 @@ STRUCTS = [
     ("Texture.write", "pipeline/texture/texture_outputs.h", "TextureOutputOptions", {"model"}),
     ("relief", "pipeline/relief/relief.h", "ReliefOptions", {"synthesis"}), ("relief", "coordinates/coordinate_synthesis.h", "CoordinateOptions", {}),
     ("relief_extract", "pipeline/relief/relief_extract.h", "ReliefExtractOptions", {}), ("ReliefResult.bake", "pipeline/relief/relief_bake.h", "ReliefBakeOptions", {}),
-    ("minimal_wall", "measure/minimal_wall.h", "MinimalWallOptions", {}),
+    ("minimal_wall", "measure/minimal_wall.h", "MinimalWallOptions", {}), ("mask", "pipeline/mask/mask.h", "MaskOptions", {"kind"}),
+    ("render", "pipeline/render/render_options.h", "RenderOptions", {}),
 ]
 
 

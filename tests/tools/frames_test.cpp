@@ -36,17 +36,6 @@ TEST_CASE("readFrames: single ones, ranges and steps, in the order given", "[too
         CHECK_FALSE(readFrames(text, frames));
 }
 
-TEST_CASE("atFrame: signs and printf's form, as many digits at least", "[tools]") {
-    CHECK(atFrame("a/shot.####.vdb", 7) == "a/shot.0007.vdb");
-    CHECK(atFrame("shot#.vdb", 12) == "shot12.vdb");
-    CHECK(atFrame("shot_%04d.vdb", 12) == "shot_0012.vdb");
-    CHECK(atFrame("shot%d.vdb", 12) == "shot12.vdb");
-    CHECK(atFrame("shot.####.vdb", 123456) == "shot.123456.vdb");
-    CHECK(atFrame("plain.vdb", 3) == "plain.vdb");
-    CHECK_FALSE(namesFrames("100%done.vdb"));
-    CHECK(namesFrames("%3d.obj"));
-}
-
 TEST_CASE("atFrame: of arguments every path, and nothing else", "[tools]") {
     const Arguments given = parseArguments("analogy", {"a.vdb", "b.vdb", "shot.##.obj", "-o", "out.##.vdb",
                                                        "--mask", "m.##.vdb:mask", "--report", "r##.json"});

@@ -45,7 +45,7 @@ MODELS = "LevelSet | Sequence[LevelSet]"
 ARGUMENTS = {
     "path": "Path", "paths": "Path | Sequence[Path]", "outputs": "Path | Sequence[Path]", "voxel_size": "float", "origin": "Place",
     "background": "float", "name": "str", "box": "Box | None", "domain": "Box", "recorded": "bool", "half_width": "float",
-    "model": "LevelSet", "exemplar": "LevelSet", "query": "LevelSet", "made": "LevelSet", "rest": "LevelSet", "posed": "LevelSet",
+    "model": "LevelSet", "models": "LevelSet | GridLike | Sequence[LevelSet | GridLike | Sequence[GridLike]]", "exemplar": "LevelSet", "query": "LevelSet", "made": "LevelSet", "rest": "LevelSet", "posed": "LevelSet",
     "partial": "LevelSet", "target": "LevelSet", "reference": "LevelSet", "exemplars": MODELS, "others": MODELS, "inputs": MODELS,
     "map": "SourceMap", "kind": "str", "source": "PatchSource", "sheet": "PatchSource", "mesh": "Mesh", "metadata": "Mapping[str, str]",
     "comments": "Sequence[str]", "names": "Sequence[str] | None", "maps": "SourceMap | Sequence[SourceMap | None] | None",
@@ -60,6 +60,8 @@ OWN_ARGUMENTS = {
     "LevelSet.from_points": {"points": "PointCloud"}, "crop": {"box": "Box"}, "write_grids": {"grids": "Sequence[GridLike]"},
     "LevelSet.with_attributes": {"grids": "Sequence[GridLike]"}, "Grid.from_openvdb": {"grid": "PyOpenVDBGrid"},
     "fill": {"hole": "LevelSet | Box | Literal['auto']", "exemplar": "LevelSet | None"},
+    "mask": {"kind": "Literal['box', 'ball', 'inside', 'range']", "model": "LevelSet | GridLike | None"},
+    "render": {"outputs": "Path | Sequence[Path] | None"},
     "filter_analogy": {"pairs": "tuple[GridLike, GridLike] | Sequence[tuple[GridLike, GridLike]]", "target": "GridLike"},
     "texture": {"target": "TextureTarget | LevelSet | Mesh | PointCloud"}, "Texture.displace": {"map": "str"},
     "TextureSample.__init__": {"maps": "Mapping[str, ArrayLike] | None"}, "read_target": {"kind": "Literal['points', 'mesh', 'levelset'] | None"},

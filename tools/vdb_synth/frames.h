@@ -1,4 +1,5 @@
 #pragma once
+#include "libvdbsynth/io/frame_path.h"
 #include "tools/vdb_synth/option_set.h"
 
 #include <functional>
@@ -10,10 +11,8 @@
 
 namespace vdbsynth::cli {
 
-/// True for a path with a place for the number of a frame: #### (as many digits at least as signs) or %04d.
-bool namesFrames(const std::string& path);
-/// The path of a frame; a path without such a place is itself.
-std::string atFrame(const std::string& path, int frame);
+using vdbsynth::atFrame;  // of a path
+using vdbsynth::namesFrames;
 /// The arguments of a frame.
 Arguments atFrame(const Arguments& arguments, int frame);
 

@@ -2,34 +2,15 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/io/path.h"
-#include "libvdbsynth/pipeline/render/shown_model.h"
-#include "libvdbsynth/render/drawn_text.h"
 
-#include <algorithm>
-#include <cctype>
+#include <array>
+#include <vector>
 
 namespace vdbsynth::cli {
 namespace {
 
 [[noreturn]] void refuse(const std::string& text) {
     throw Error(ErrorCode::InvalidOption, text);
-}
-
-void refuseTogether(const Arguments& arguments, const std::string& option,
-                    const std::vector<std::string>& others) {
-    if (!arguments.has(option)) return;
-    for (const std::string& other : others)
-        if (arguments.has(other)) refuse("--" + option + ": cannot be combined with --" + other);
-}
-
-Vec3d readView(const Arguments& arguments) {
-    const std::array<double, 3> text = arguments.triple("view");
-    const Vec3d view{text[0], text[1], text[2]};
-    const double reach = length(view);
-    if (!(reach > 1e-6 && reach < 1e6))
-        refuse("--view " + arguments.text("view") +
-               ": must be a direction from the model to the camera, for example 1,-1.6,0.9");
-    return view;
 }
 
 // Names with commas between them; "\," is a comma of a name.
@@ -49,16 +30,18 @@ std::vector<std::string> readCaptions(const Run& run) {
     const std::vector<std::string>& inputs = run.arguments.inputs;
     const std::string text = run.arguments.text("captions");
     if (text == "none" || (text.empty() && inputs.size() == 1)) return {};
+    if (!text.empty() && text != "names") return captionsOf(text);
     std::vector<std::string> labels;
-    if (text.empty() || text == "names")
-        for (const std::string& input : inputs) labels.push_back(run.withoutTemporaries(fileNameOf(input)));
-    else
-        labels = captionsOf(text);
-    if (labels.size() != inputs.size())
-        refuse("--captions " + text + ": has " + std::to_string(labels.size()) + " captions for " +
-               std::to_string(inputs.size()) +
-               " models; give one for each, with commas between them, or none");
+    for (const std::string& input : inputs) labels.push_back(run.withoutTemporaries(fileNameOf(input)));
     return labels;
+}
+
+// The grid is read later, and these are known now.
+void refuseDirections(const Arguments& arguments) {
+    if (!arguments.has("directions")) return;
+    for (const char* other : {"slice", "color"})
+        if (arguments.has(other)) refuse(std::string("--directions: cannot be combined with --") + other);
+    if (arguments.inputs.size() > 1) refuse("--directions: belongs to one model, but several are given");
 }
 
 void readOutput(const Run& run, RenderRequest& request) {
@@ -69,7 +52,7 @@ void readOutput(const Run& run, RenderRequest& request) {
                                    "samples", "same-scale", "no-ground", "density"})
             if (run.arguments.has(option))
                 refuse(std::string("--") + option + ": is for pictures (.png), and " + path + " is a page");
-    if (request.turntable > 0 && !namesFrames(path))
+    if (request.options.turntable > 0 && !namesFrames(path))
         refuse("--turntable: " + path +
                " names one file; write #### where a picture's number is to stand, as in "
                "turn.####.png");
@@ -77,104 +60,63 @@ void readOutput(const Run& run, RenderRequest& request) {
 
 }  // namespace
 
-bool readBackground(const std::string& text, Background& background) {
-    background = {};
-    if (text == "studio") return true;
-    if (text == "transparent") {
-        background.kind = Background::Kind::Transparent;
-        return true;
-    }
-    background.kind = Background::Kind::Plain;
-    for (const auto& [name, grey] :
-         {std::pair<const char*, float>{"white", 1.f}, {"grey", 0.5f}, {"black", 0.f}})
-        if (text == name) {
-            background.colour = {grey, grey, grey};
-            return true;
-        }
-    if (text.size() != 7 || text[0] != '#') return false;
-    for (int c = 0; c < 3; ++c) {
-        int value = 0;
-        for (std::size_t k = 0; k < 2; ++k) {
-            const char digit =
-                char(std::tolower(static_cast<unsigned char>(text[1 + std::size_t(c) * 2 + k])));
-            if (!std::isxdigit(static_cast<unsigned char>(digit))) return false;
-            value = value * 16 + (digit <= '9' ? digit - '0' : digit - 'a' + 10);
-        }
-        background.colour[c] = float(value) / 255;
-    }
-    return true;
-}
-
 RenderRequest readRenderRequest(const Run& run) {
     const Arguments& arguments = run.arguments;
     RenderRequest request;
-    const std::array<int, 2> size = arguments.pixels("size");
-    request.preview.width = size[0];
-    request.preview.height = size[1];
-    request.preview.samples = arguments.whole("samples");
-    request.preview.density = arguments.real("density");
-    request.preview.ground = !arguments.has("no-ground");
-    if (!readBackground(arguments.text("background"), request.preview.background))
+    RenderOptions& options = request.options;
+    options.size = arguments.pixels("size");
+    options.samples = arguments.whole("samples");
+    options.density = arguments.real("density");
+    options.ground = !arguments.has("no-ground");
+    if (!parseBackground(arguments.text("background"), options.background))
         refuse("--background " + arguments.text("background") +
                ": must be studio, transparent, white, grey, black or a colour such as #203040");
-    if (arguments.has("view")) request.view = readView(arguments);
-    if (arguments.text("up") == "y") request.up = UpAxis::Y;
-    if (arguments.text("up") == "z") request.up = UpAxis::Z;
-    request.labels = readCaptions(run);
-    request.colours = arguments.text("color");
-    if (arguments.has("columns")) request.columns = std::size_t(arguments.whole("columns"));
-    request.turntable = arguments.whole("turntable");
-    request.wireframe = arguments.has("wireframe");
-    request.sameScale = arguments.has("same-scale");
+    if (arguments.has("view")) {
+        const std::array<double, 3> view = arguments.triple("view");
+        options.view = Vec3d{view[0], view[1], view[2]};
+    }
+    if (arguments.text("up") == "y") options.up = UpAxis::Y;
+    if (arguments.text("up") == "z") options.up = UpAxis::Z;
+    options.captions = readCaptions(run);
+    options.color = arguments.text("color");
+    if (arguments.has("columns")) options.columns = arguments.whole("columns");
+    options.turntable = arguments.whole("turntable");
+    options.wireframe = arguments.has("wireframe");
+    options.sameScale = arguments.has("same-scale");
     if (arguments.has("slice")) {
         const SliceValue where = arguments.slice("slice");
-        SliceOptions& slice = request.slice.emplace();
-        slice.width = request.preview.width;
-        slice.height = request.preview.height;
-        slice.axis = where.axis;
-        slice.fraction = where.fraction;
+        options.slice = {where.axis, where.fraction};
     }
-    refuseTogether(arguments, "directions", {"slice"});
-    for (const char* option :
-         {"view", "up", "wireframe", "turntable", "background", "no-ground", "same-scale", "color"})
-        refuseTogether(arguments, option, {"slice"});
-    refuseTogether(arguments, "directions", {"color"});
-    if (arguments.has("directions") && arguments.inputs.size() > 1)
-        refuse("--directions: belongs to one model, but several are given");
+    refuseDirections(arguments);
+    validate(options, arguments.inputs.size());
     readOutput(run, request);
-    for (const std::string& label : request.labels)
-        if (!hasLetters(label))
-            message(run.context, MessageLevel::Note,
-                    "caption " + label + ": characters without a letter of the program's are drawn as boxes");
     return request;
 }
 
-ShownInput loadShown(Run& run, const std::string& path, const RenderRequest& request) {
-    ShownInput shown;
-    shown.path = path;
-    const std::string grid = run.arguments.text("grid");
+ShownModel loadShown(Run& run, const std::string& path, const RenderRequest& request) {
+    const RenderOptions& options = request.options;
+    ShownModel shown;
+    shown.name = path;
+    shown.up = customaryUp(path);
     run.reserveOutputs();
-    if (!run.arguments.has("iso") && !request.slice && !request.page) {
-        ShownFog fog = readFog(path, grid, run.context);
+    if (!run.arguments.has("iso") && !options.slice && !request.page) {
+        ShownFog fog = readFog(path, run.arguments.text("grid"), run.context);
         if (fog.density) {
             message(run.context, MessageLevel::Note,
                     path + ": grid \"" + fog.name + "\" is drawn as fog; `iso` draws its surface");
             shown.fog = fog.density;
-            shown.colours = shownColours(fog.others, request.colours, path);
+            shown.attributes = fog.others;
             run.noteInput(path);
         }
     }
     if (!shown.fog) {
-        ModelOptions options = run.modelOptions();
-        options.carry = request.colours != "none" && !request.slice;
-        options.keepSource = request.wireframe;
-        shown.model = run.load(path, options);
-        if (options.carry) shown.colours = shownColours(shown.model.attributes, request.colours, path);
+        ModelOptions model = run.modelOptions();
+        model.carry = options.color != "none" && !options.slice;
+        model.keepSource = options.wireframe;
+        shown.model = run.load(path, model);
+        shown.attributes = shown.model.attributes;
     }
-    const UpAxis custom = customaryUp(path);
-    shown.up = request.up.value_or(custom);
-    shown.view = request.view.value_or(usualView(shown.up));
-    if (!request.up && custom == UpAxis::Y && !request.slice)
+    if (!options.up && shown.up == UpAxis::Y && !options.slice)
         message(run.context, MessageLevel::Note,
                 path + ": drawn with y up, as ." + readExtensionOf(path) +
                     " files are by custom; --up z changes it");

@@ -13,16 +13,28 @@ namespace vdbsynth {
 
 ShownFog readFog(const std::string& path, const std::string& gridName, const RunContext& ctx) {
     if (readExtensionOf(path) != "vdb") return {};
+    return fogOf(path, readVdbGrids(path, ctx), gridName, ctx);
+}
+
+ShownFog fogOf(const std::string& name, const std::vector<GridPtr>& grids, const std::string& gridName,
+               const RunContext& ctx) {
     ShownFog fog;
-    fog.others = readVdbGrids(path, ctx);
+    fog.others = grids;
     VdbReadOptions options;
     options.gridName = gridName;
-    const GridPtr picked = pickedGrid(path, fog.others, options);
-    const FloatGridPtr field = asFloat(picked);
+    const FloatGridPtr field = asFloat(pickedGrid(name, fog.others, options));
     if (!field || kindOf(*field, ctx) != FieldKind::Density) return {};
     fog.density = field;
     fog.name = field->getName();
     return fog;
+}
+
+UpAxis upOf(const ShownModel& model, const RenderOptions& options) {
+    return options.up.value_or(model.up);
+}
+
+Vec3d viewOf(const ShownModel& model, const RenderOptions& options) {
+    return options.view.value_or(usualView(upOf(model, options)));
 }
 
 GridPtr shownColours(const std::vector<GridPtr>& grids, const std::string& name, const std::string& path) {
@@ -30,7 +42,7 @@ GridPtr shownColours(const std::vector<GridPtr>& grids, const std::string& name,
     if (name.empty()) return colourGridOf(grids);
     const GridPtr grid = gridNamed(grids, name, nullptr);
     if (!grid)
-        throw Error(ErrorCode::BadData, "`colours` " + name + ": not in " + path + ", which has " +
+        throw Error(ErrorCode::BadData, "`color` " + name + ": not in " + path + ", which has " +
                                             (grids.empty() ? "no attributes" : listOf(grids)));
     return grid;
 }

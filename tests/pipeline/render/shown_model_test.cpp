@@ -53,6 +53,34 @@ TEST_CASE("readFog: a fog volume or a field of no class, but no level set", "[pi
     std::remove(both.c_str());
 }
 
+TEST_CASE("fogOf: the fog among grids in memory, with all of them", "[pipeline]") {
+    openvdb::initialize();
+    const auto colour = openvdb::Vec3SGrid::create();
+    colour->setName("Cd");
+    const std::vector<GridPtr> grids{colour, fogNamed("density", openvdb::GRID_FOG_VOLUME)};
+    const ShownFog fog = fogOf("the model", grids, "");
+    CHECK(fog.density == grids[1]);
+    CHECK(fog.others == grids);
+    const FloatGridPtr ball = meshToLevelSet(test::sphereMesh(8, 4), 1, 3, "ball");
+    CHECK_FALSE(fogOf("the model", {ball}, "").density);
+    const test::Thrown thrown = test::thrownBy([&] { fogOf("the model", {colour}, ""); });
+    CHECK(thrown.code == int(ErrorCode::BadData));
+    CHECK(test::contains(thrown.message, "the model"));
+}
+
+TEST_CASE("upOf, viewOf: the model's own, unless the options say", "[pipeline]") {
+    ShownModel model;
+    RenderOptions options;
+    CHECK(upOf(model, options) == UpAxis::Z);
+    CHECK(length(viewOf(model, options) - usualView(UpAxis::Z)) == 0);
+    model.up = UpAxis::Y;
+    CHECK(length(viewOf(model, options) - usualView(UpAxis::Y)) == 0);
+    options.up = UpAxis::Z;
+    CHECK(upOf(model, options) == UpAxis::Z);
+    options.view = Vec3d{0, 0, 1};
+    CHECK(length(viewOf(model, options) - Vec3d{0, 0, 1}) == 0);
+}
+
 TEST_CASE("shownColours: the usual name, a given one, none", "[pipeline]") {
     openvdb::initialize();
     const auto named = [](const char* name) {
@@ -67,7 +95,7 @@ TEST_CASE("shownColours: the usual name, a given one, none", "[pipeline]") {
     CHECK_FALSE(shownColours({}, "", "a.vdb"));
     const test::Thrown thrown = test::thrownBy([&] { shownColours(grids, "w", "a.vdb"); });
     CHECK(thrown.code == int(ErrorCode::BadData));
-    CHECK(test::contains(thrown.message, "`colours` w: not in a.vdb, which has v"));
+    CHECK(test::contains(thrown.message, "`color` w: not in a.vdb, which has v"));
 }
 
 TEST_CASE("customaryUp: y for files of modelling programs", "[pipeline]") {

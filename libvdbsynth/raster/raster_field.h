@@ -16,6 +16,8 @@ struct RasterField {
     double voxelSize = 1;                    ///< [world]
     Vec3d origin{0, 0, 0};                   ///< [world] of voxel 0,0,0
     std::array<Vec3d, 3> axes = kWorldAxes;  ///< unit directions of the voxels, at right angles
+    /// [voxels] up to which the field's values are distances; 0: only its zero level means something.
+    float distanceBand = 0;
     /// Share of an image's pixels whose heights lie farther than a voxel from the surface.
     double lostShare = 0;
     /// [voxels] of a volume's solid samples, within the domain, if they have only two sides; else 0.

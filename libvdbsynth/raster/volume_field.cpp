@@ -24,11 +24,24 @@ Index3 nearestSample(const Raster& raster, const Index3& p) {
             std::clamp(p.z, 0, raster.size.z - 1)};
 }
 
-// threshold - value over the box of the samples enlarged by the margin.
-BrickField thresholdField(const Raster& raster, const RasterRange& range, double threshold,
-                          const RunContext& ctx) {
-    const double most = std::max(range.maximum - threshold, threshold - range.minimum);
-    const float scale = float(0.999 * double(kRasterFieldLimit) / most);
+// True if values change by about a sample's side from sample to sample wherever they cross the threshold.
+bool isDistance(const Raster& raster, double threshold, double side) {
+    constexpr double kMost = 0.2;  // change of the gradient's length: in creases it is shorter
+    constexpr double kShare = 0.8;
+    std::size_t near = 0, good = 0;
+    forEachVoxel({{1, 1, 1}, raster.size - Index3{2, 2, 2}}, [&](const Index3& p) {
+        const auto at = [&](int x, int y, int z) { return double(raster.at(p.x + x, p.y + y, p.z + z)); };
+        if (!(std::abs(at(0, 0, 0) - threshold) < 0.5 * side)) return;
+        const double x = at(1, 0, 0) - at(-1, 0, 0), y = at(0, 1, 0) - at(0, -1, 0),
+                     z = at(0, 0, 1) - at(0, 0, -1);
+        ++near;
+        good += std::abs(std::sqrt(x * x + y * y + z * z) / (2 * side) - 1) < kMost;
+    });
+    return near > 0 && double(good) >= kShare * double(near);
+}
+
+// (threshold - value) times a scale over the box of the samples enlarged by the margin.
+BrickField thresholdField(const Raster& raster, double threshold, double scale, const RunContext& ctx) {
     return crossingField(
         IndexBox::fromSize(raster.size).expanded(kRasterFieldMargin), kRasterFieldLimit, ctx,
         [&](const Index3& corner, const Index3& size, float* out) {
@@ -36,7 +49,8 @@ BrickField thresholdField(const Raster& raster, const RasterRange& range, double
                 const Index3 p = nearestSample(raster, voxel);
                 const float value = raster.at(p.x, p.y, p.z);
                 *out++ = std::isnan(value) ? kRasterFieldLimit
-                                           : float((threshold - double(value)) * double(scale));
+                                           : std::clamp(float((threshold - double(value)) * scale),
+                                                        -kRasterFieldLimit, kRasterFieldLimit);
             });
         });
 }
@@ -219,7 +233,13 @@ RasterField volumeField(const std::string& name, const Raster& given, const Volu
     if (options.threshold || options.below) {
         const double t = options.below ? -*options.below : *options.threshold;
         requireSurface(name, range, t, options.below.has_value());
-        result.field = thresholdField(raster, range, t, ctx);
+        const double most = std::max(range.maximum - t, t - range.minimum);
+        double scale = 0.999 * double(kRasterFieldLimit) / most;
+        if (cell.x == cell.y && cell.y == cell.z && isDistance(raster, t, cell.x)) {
+            scale = 1 / cell.x;
+            result.distanceBand = float(std::min(0.999 * double(kRasterFieldLimit), most * scale));
+        }
+        result.field = thresholdField(raster, t, scale, ctx);
         // More values are samples of something smooth.
         if (range.distinct.size() == 2)
             result.solidVolume = volumeWhere(raster, cell, [&](float value) { return double(value) > t; });

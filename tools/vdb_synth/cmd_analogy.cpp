@@ -8,6 +8,7 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/io/mesh_file.h"
 #include "libvdbsynth/io/path.h"
 #include "libvdbsynth/pipeline/analogy/analogy.h"
 #include "libvdbsynth/pipeline/analogy/filter_analogy.h"
@@ -97,7 +98,8 @@ Models loadModels(Run& run) {
     return models;
 }
 
-void report(Run& run, const AnalogyResult& result) {
+// @param now  the result was made for this frame
+void report(Run& run, const AnalogyResult& result, bool now = true) {
     nlohmann::json levels = nlohmann::json::array();
     for (const AnalogyLevelStats& level : result.levels)
         levels.push_back({{"voxels", level.voxels},
@@ -115,9 +117,10 @@ void report(Run& run, const AnalogyResult& result) {
     nlohmann::json places = nlohmann::json::array();
     for (const Vec3d& p : result.singularities) places.push_back({p.x, p.y, p.z});
     run.count("singularity_places", places);
-    message(run.context, MessageLevel::Note,
-            "the direction field has " + std::to_string(result.singularities.size()) +
-                " singularities; near them a texture has no direction");
+    if (now)
+        message(run.context, MessageLevel::Note,
+                "the direction field has " + std::to_string(result.singularities.size()) +
+                    " singularities; near them a texture has no direction");
     run.describe(result.model);
 }
 
@@ -205,7 +208,7 @@ Made makeResult(Run& run, AnalogyOptions options) {
     Models models = loadModels(run);
     if (run.arguments.has("texture-size"))
         options.scale = scaleOfSize(run.arguments, longestSide(models.pairs.front()),
-                                    voxelSizeOf(*models.target.grid), "--exemplar-resolution");
+                                    voxelSizeOf(*models.target.grid), run.arguments.inputs.front());
     keepNamedAttributes(run.arguments, models.pairs);
     if (run.arguments.has("mask"))
         options.mask = maskOf(run, "mask", voxelSizeOf(*models.target.grid), kMaskHalfWidth);
@@ -225,11 +228,43 @@ LevelSet loadPosed(Run& run, const LevelSet& rest) {
     return run.load(path, options);
 }
 
+// Before anything is made: the texture at rest may take minutes.
+void requirePose(Run& run) {
+    const std::string rest = run.arguments.text("rest"), posed = run.arguments.inputs.back();
+    if (run.changesByFrame(rest))
+        throw Error(ErrorCode::InvalidOption,
+                    "--rest " + rest +
+                        ": is another file for every frame, so that the texture would be made "
+                        "anew each time and swim; name the one pose that it is made on");
+    if (!isMeshPath(rest) || !isMeshPath(posed)) return;
+    const Mesh from = readMesh(rest, run.context), to = readMesh(posed, run.context);
+    const auto counts = [](const Mesh& mesh) {
+        return std::to_string(mesh.points.size()) + " vertices and " + std::to_string(mesh.faceCount()) +
+               " faces";
+    };
+    if (counts(from) != counts(to))
+        throw Error(ErrorCode::ShapeMismatch, posed + ": has " + counts(to) + ", " + rest + " (--rest) has " +
+                                                  counts(from) +
+                                                  "; poses of one mesh have the same vertices and faces");
+}
+
+// With the name of the file that is not a pose of what is at rest.
+LevelSet poseOf(Run& run, const LevelSet& made, const LevelSet& rest, const LevelSet& posed,
+                const PoseOptions& options) {
+    try {
+        return poseModel(made, rest, posed, options, run.context);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::Unusable && error.code() != ErrorCode::ShapeMismatch) throw;
+        throw Error(error.code(), run.arguments.inputs.back() + ": " + error.what());
+    }
+}
+
 void analogyInPose(Run& run, const AnalogyOptions& options, const std::vector<std::string>& paths) {
     if (run.arguments.has("source-map"))
         throw Error(ErrorCode::InvalidOption,
                     "--source-map: says where voxels of the rest pose come from; give it in a run without "
                     "--rest, with the rest pose as B");
+    requirePose(run);
     run.reserveOutputs();
     bool now = false;
     // Only B and what is written differ.
@@ -248,12 +283,12 @@ void analogyInPose(Run& run, const AnalogyOptions& options, const std::vector<st
     pose.reach = std::ceil(made->result.reach) + 1;
     const LevelSet posed = loadPosed(run, made->target);
     AnalogyResult result = made->result;
-    result.model = poseModel(atRest, made->target, posed, pose, run.context);
+    result.model = poseOf(run, atRest, made->target, posed, pose);
     ModelOutputOptions outputs;
     outputs.adaptivity = run.arguments.real("adaptivity");
     run.describeOutputs(outputs);
     writeModel(result.model, paths, outputs, run.outputs(), run.context);
-    report(run, result);
+    report(run, result, now);
     run.finish();
 }
 

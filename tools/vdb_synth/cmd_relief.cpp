@@ -1,5 +1,6 @@
 #include "tools/vdb_synth/command.h"
 #include "tools/vdb_synth/direction_option.h"
+#include "tools/vdb_synth/mask_option.h"
 #include "tools/vdb_synth/option_value.h"
 #include "tools/vdb_synth/relief_base_option.h"
 #include "tools/vdb_synth/texture_files.h"
@@ -176,6 +177,7 @@ Mask loadMask(Run& run, double voxelSize, ReliefOptions& options) {
         options.mask = run.loadGrid("mask");
         return mask;
     }
+    refusePicture(run.arguments, "mask");
     ModelOptions model;
     if (extensionOf(text) != "vdb") model.voxelSize = voxelSize;
     mask.model = run.load(text, model);
@@ -266,7 +268,7 @@ void relief(Run& run) {
         const double side = first.scan ? longestSide(*first.scan)
                                        : double(std::max(first.heights.width, first.heights.height));
         const double unit = first.pixelSize > 0 ? first.pixelSize : voxelSizeOf(*target.grid);
-        options.scale = scaleOfSize(arguments, side, unit, "--exemplar-resolution");
+        options.scale = scaleOfSize(arguments, side, unit, arguments.inputs.front());
     }
     const Mask mask = loadMask(run, voxelSizeOf(*target.grid), options);
     if (mask.isModel) options.maskModel = &mask.model;

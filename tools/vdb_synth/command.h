@@ -63,6 +63,8 @@ public:
                           });
         return same ? frames()->kept<T>(name, make) : make();
     }
+    /// True in a sequence of which every frame has another file in this path's place.
+    bool changesByFrame(const std::string& path) const { return frames() && !frames()->isShared(path); }
     /// Reads the grid that an option names as FILE.vdb:GRID, or a file's only grid. @throw Error BadData
     GridPtr loadGrid(const std::string& option);
     GridPtr loadGrid(const std::string& option, const std::string& text);

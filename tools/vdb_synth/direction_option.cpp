@@ -119,9 +119,12 @@ DirectionSource directionOf(Run& run, const std::string& name) {
                      : isRows(extension) ? strokesOfRows(text)
                                          : strokesOfPoints(text, run.context);
     run.noteInput(text);
-    for (const Stroke& stroke : source.strokes)
+    for (std::size_t i = 0; i < source.strokes.size(); ++i) {
+        const Stroke& stroke = source.strokes[i];
         if (!std::isfinite(dot(stroke.position, stroke.position)) || !(length(stroke.direction) > 0))
-            throw Error(ErrorCode::BadData, text + ": a stroke without a position or a direction");
+            throw Error(ErrorCode::BadData,
+                        text + ": stroke " + std::to_string(i + 1) + " has no position or no direction");
+    }
     if (source.strokes.empty()) throw Error(ErrorCode::BadData, text + ": holds no strokes");
     return source;
 }

@@ -1,10 +1,16 @@
 #include "tools/vdb_synth/mask_option.h"
 
+#include "tools/vdb_synth/options.h"
+
+#include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
 #include "libvdbsynth/io/mesh_file.h"
+#include "libvdbsynth/io/path.h"
 #include "libvdbsynth/vdb/control_grids.h"
 
 #include <algorithm>
+#include <set>
+#include <string>
 
 namespace vdbsynth::cli {
 namespace {
@@ -26,9 +32,22 @@ double voxelSizeOf(Run& run, const std::string& path, double voxelSize) {
 
 }  // namespace
 
+void refusePicture(const Arguments& arguments, const std::string& name) {
+    // As a model it is a slab of a world unit a pixel.
+    static const std::set<std::string> kPictures{"png", "jpg", "jpeg", "pgm", "exr"};
+    const std::string text = arguments.text(name);
+    if (kPictures.count(extensionOf(text)) == 0) return;
+    const bool painted = findOption(arguments.command(), name + "-image") != nullptr;
+    throw Error(ErrorCode::InvalidOption,
+                "--" + name + " " + text +
+                    ": a picture has no place in space; give a model or FILE.vdb:GRID" +
+                    (painted ? ", or the picture as --" + name + "-image" : ""));
+}
+
 GridConstPtr maskOf(Run& run, const std::string& name, double voxelSize, double halfWidth) {
     const std::string text = run.arguments.text(name);
     if (namesGrid(text)) return run.loadGrid(name);
+    refusePicture(run.arguments, name);
     ModelOptions model;
     model.voxelSize = voxelSizeOf(run, text, voxelSize);
     model.halfWidth = halfWidth;

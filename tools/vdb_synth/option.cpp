@@ -178,13 +178,15 @@ std::string allowedText(const Option& option) {
         case Kind::Labels:
             return "numbers and ranges with commas, for example 1,4,10-20";
         case Kind::Frames:
-            return "numbers of frames, for example 1-20, 1-20x2 for every second one, or 1,4,10-12";
+            return "numbers of frames, each once, for example 1-20, 1-20x2 for every second one, or "
+                   "1,4,10-12";
         case Kind::Process:
             return "such as \"make balls\" or \"make balls --feature 12\", with a feature from 4 to 256";
         case Kind::Direction:
-            return "axis:x|y|z or axis:-x, a vector x,y,z that is not 0, around:x|y|z, radial, curvature, a "
-                   "grid FILE.vdb[:GRID], or "
-                   "strokes in a .csv, .json or .ply file";
+            return std::string(
+                       "axis:x|y|z or axis:-x, a vector x,y,z that is not 0, around:x|y|z, radial, ") +
+                   (option.help.find("curvature") == std::string::npos ? "" : "curvature, ") +
+                   "a grid FILE.vdb[:GRID], or strokes in a .csv, .json or .ply file";
         case Kind::NamedImage:
             return "NAME=FILE with an image, for example roughness=rough.png; a name of letters, digits and "
                    "_";

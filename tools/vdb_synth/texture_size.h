@@ -11,9 +11,9 @@ double longestSide(const LevelSet& model);
 
 /// The --scale that lays a sample of `side` voxels over --texture-size on a target. Features keep their size
 /// in world units whatever the target's voxels are.
-/// @param finer  the option that makes the sample finer or coarser, for the message
+/// @param sample  its file, for what the message advises
 /// @throw Error InvalidOption (with --scale as well; a scale that the command does not allow)
-double scaleOfSize(const Arguments& arguments, double side, double voxelSize, const std::string& finer);
+double scaleOfSize(const Arguments& arguments, double side, double voxelSize, const std::string& sample);
 
 /// The same of `texture`: the scale that lays the longest side of an image, in pixels, over --texture-size.
 /// @param spacing  siteSpacing of the target [world]

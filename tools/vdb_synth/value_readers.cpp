@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <set>
 #include <sstream>
 
 namespace vdbsynth::cli {
@@ -229,8 +230,10 @@ bool addPart(const std::string& part, std::vector<int>& frames) {
 bool readFrames(const std::string& text, std::vector<int>& frames) {
     frames.clear();
     const std::vector<std::string> parts = splitAtCommas(text);
-    return std::all_of(parts.begin(), parts.end(),
-                       [&](const std::string& part) { return addPart(part, frames); });
+    if (!std::all_of(parts.begin(), parts.end(),
+                     [&](const std::string& part) { return addPart(part, frames); }))
+        return false;
+    return std::set<int>(frames.begin(), frames.end()).size() == frames.size();
 }
 
 bool readAxes(const std::string& text, std::array<bool, 3>& axes) {

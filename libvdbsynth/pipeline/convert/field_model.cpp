@@ -9,22 +9,24 @@
 namespace vdbsynth {
 namespace {
 
-RebuildOptions bandOf(float halfWidth) {
+RebuildOptions bandOf(float halfWidth, float ownBand) {
     RebuildOptions options;
     options.halfWidth = halfWidth;
+    options.keepDistances = ownBand > 0;
+    if (ownBand > 0) options.band = ownBand;
     return options;
 }
 
 }  // namespace
 
-LevelSet modelFromField(const BrickField& given, float limit, bool exact, const IndexBox& domain,
+LevelSet modelFromField(const BrickField& given, float limit, bool exact, float band, const IndexBox& domain,
                         double voxelSize, const std::string& what, const std::string& hint,
                         const RunContext& ctx) {
     // Closed at the edge of what was computed: a jump from inside to outside between constant bricks has no
     // surface to measure from.
     const BrickField distances =
         exact ? BrickField()
-              : rebuiltBand(closeField(given, given.box(), kAllCut, limit, ctx), bandOf(limit), ctx);
+              : rebuiltBand(closeField(given, given.box(), kAllCut, limit, ctx), bandOf(limit, band), ctx);
     float side = 0;
     if (!exact && distances.constantIn(distances.box(), side))
         throw Error(ErrorCode::EmptyInput, what + " has no surface");

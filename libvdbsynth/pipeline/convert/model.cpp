@@ -157,8 +157,8 @@ LevelSet loadRaster(const std::string& path, const ModelOptions& options, const 
         image ? heightField(path, raster, heights, ctx) : volumeField(path, raster, options.volume, ctx);
     if (!field.description.empty()) message(ctx, MessageLevel::Note, path + ": " + field.description);
     sayLostHeights(path, raster, field, ctx);
-    LevelSet model = modelFromField(field.field, kRasterFieldLimit, /* exact= */ false, field.domain,
-                                    field.voxelSize, path, "no part of it is solid", ctx);
+    LevelSet model = modelFromField(field.field, kRasterFieldLimit, /* exact= */ false, field.distanceBand,
+                                    field.domain, field.voxelSize, path, "no part of it is solid", ctx);
     sayLostSamples(path, field, *model.grid, ctx);
     placeInWorld(field, *model.grid);
     if (!image) model = atVoxelSize(path, model, options, ctx);

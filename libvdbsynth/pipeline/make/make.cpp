@@ -20,7 +20,7 @@ void requireVoxelSize(double voxelSize) {
 ModelPair pairOf(const MakeOptions& options, const RunContext& ctx) {
     const AnalogyPairFields made = makeAnalogyPair(options.exemplar, ctx);
     const auto model = [&](const ExemplarField& field) {
-        return modelFromField(field.field, kExemplarLimit, field.exact, field.domain, options.voxelSize,
+        return modelFromField(field.field, kExemplarLimit, field.exact, 0, field.domain, options.voxelSize,
                               "make " + options.exemplar.kind, "use a larger `resolution` or another `seed`",
                               ctx);
     };
@@ -32,7 +32,7 @@ ModelPair pairOf(const MakeOptions& options, const RunContext& ctx) {
 
 LevelSet modelOf(const MakeOptions& options, const RunContext& ctx) {
     const ExemplarField made = makeExemplar(options.exemplar, ctx);
-    return modelFromField(made.field, kExemplarLimit, made.exact, made.domain, options.voxelSize,
+    return modelFromField(made.field, kExemplarLimit, made.exact, 0, made.domain, options.voxelSize,
                           "make " + options.exemplar.kind, "use a larger `size` or another `seed`", ctx);
 }
 

@@ -104,7 +104,7 @@ TexturePoints pointsOf(const MakePointsOptions& options, const RunContext& ctx) 
     const ExemplarField made = makeExemplar(options.model.exemplar, samplingOf(options), ctx);
     const double side = options.model.voxelSize, margin = marginOf(options);
     const IndexBox box = made.field.box().expanded(-kCapMargin);
-    const LevelSet model = modelFromField(made.field, kExemplarLimit, made.exact, box, side / made.fine,
+    const LevelSet model = modelFromField(made.field, kExemplarLimit, made.exact, 0, box, side / made.fine,
                                           "make " + kind, "use a larger `size` or another `seed`", ctx);
     TexturePoints result;
     Vec3d low, high;

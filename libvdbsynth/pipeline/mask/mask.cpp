@@ -2,10 +2,13 @@
 
 #include "libvdbsynth/base/error.h"
 #include "libvdbsynth/base/number_text.h"
+#include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/level_set.h"
 #include "libvdbsynth/vdb/mask.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace vdbsynth {
 namespace {
@@ -54,6 +57,19 @@ void sayUnused(const MaskOptions& options, const RunContext& ctx) {
         if (is)
             message(ctx, MessageLevel::Note,
                     std::string("`") + field + "` has no effect on mask " + wordOf(options.kind));
+}
+
+void sayNothing(const openvdb::FloatGrid& grid, double low, double high, const RunContext& ctx) {
+    float least = std::numeric_limits<float>::max(), most = -least;
+    for (auto value = grid.cbeginValueOn(); value; ++value) {
+        least = std::min(least, *value);
+        most = std::max(most, *value);
+    }
+    message(ctx, MessageLevel::Warning,
+            "the mask is empty: no value lies from " + roundedText(low, 6) + " to " + roundedText(high, 6) +
+                (least > most ? ", as the grid has no active voxel"
+                              : "; the grid's values go from " + roundedText(double(least), 6) + " to " +
+                                    roundedText(double(most), 6)));
 }
 
 GridPtr boxOf(const MaskOptions& options, const RunContext& ctx) {
@@ -109,7 +125,10 @@ GridPtr makeMask(const MaskOptions& options, const FloatGridConstPtr& grid, cons
     if (options.kind == MaskKind::Box) return boxOf(options, ctx);
     if (options.kind == MaskKind::Ball) return ballOf(options, ctx);
     if (options.kind == MaskKind::Inside) return insideMask(*grid, ctx);
-    return rangeMask(*grid, options.range->first, options.range->second, ctx);
+    const auto [low, high] = *options.range;
+    const GridPtr made = rangeMask(*grid, low, high, ctx);
+    if (made->empty()) sayNothing(*grid, low, high, ctx);
+    return made;
 }
 
 }  // namespace vdbsynth

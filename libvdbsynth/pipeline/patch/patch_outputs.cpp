@@ -184,8 +184,8 @@ LevelSet sheetLevelSet(const PatchSource& source, const PatchSheet& sheet, doubl
     const VoxelWriter writer(exemplar.plane, first, last);
     const LevelSet made =
         modelFromField(sheetField(sheet, exemplar.kernel, writer, corner, voxelSize, first, last, ctx),
-                       kFieldReach, false, {writer.turned(voxels.low), writer.turned(voxels.high)}, voxelSize,
-                       "the sheet", "a larger `size` may hold more", ctx);
+                       kFieldReach, false, 0, {writer.turned(voxels.low), writer.turned(voxels.high)},
+                       voxelSize, "the sheet", "a larger `size` may hold more", ctx);
     return withHalfWidth(made, halfWidth, ctx);
 }
 

@@ -51,6 +51,7 @@ class Analogy(CliTest):
         words = ("analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "x.vdb", "--texture-size")
         self.fails(2, "give one of them", *words, 10, "--scale", 1)
         self.fails(2, "a scale of", *words, 1000 * side * voxel)
+        self.fails(2, f"here sizes from {0.25 * side * voxel:.4g} to {4 * side * voxel:.4g} fit", *words, 1000 * side * voxel)
 
     def test_strokes(self):
         self.write("s.csv", "32,10,32,1,0,0\n32,54,32,-1,0,0\n")
@@ -67,7 +68,7 @@ class Analogy(CliTest):
         self.write("n.csv", "1,2,3,0,x,0\n")
         self.fails(3, "n.csv:1: column dy is no number", "analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--direction", "n.csv")
         self.write("bad.csv", "1,2,3,0,0,0\n")
-        self.fails(3, "without a position or a direction", "analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--direction", "bad.csv")
+        self.fails(3, "stroke 1 has no position or no direction", "analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--direction", "bad.csv")
         self.write("bad.json", "[{\"position\": 1}]")
         self.fails(3, "not a list of", "analogy", "a.vdb", "a2.vdb", "b.vdb", "-o", "m.vdb", "--direction", "bad.json")
         self.write("short.csv", "1,2,3,4\n")

@@ -88,6 +88,7 @@ class Frames(CliTest):
         self.fails(2, "every frame would replace it", "convert", "b.####.off", "-o", "f.vdb", "--frames", "8-10")
         self.fails(2, "no file names frames", "convert", "b.0008.off", "-o", "f.vdb", "--frames", "8")
         self.fails(2, "numbers of frames", "convert", "b.####.off", "-o", "f.####.vdb", "--frames", "10-8")
+        self.fails(2, "each once", "convert", "b.####.off", "-o", "f.####.vdb", "--frames", "8,8-10")
         self.fails(2, "add --frames", "convert", "b.####.off", "-o", "f.####.vdb")
         self.fails(2, "is the file of the input", "convert", "b.####.off", "-o", "b.####.off", "--frames", "8-10")
 
@@ -105,7 +106,8 @@ class Poses(CliTest):
         self.words = ("analogy", "a.vdb", "a2.vdb", "b.#.off", "--rest", "rest.off", "--resolution", 64, "--direction", "axis:z")
 
     def test_frames(self):
-        self.ok(*self.words, "-o", "p.#.vdb", "--frames", "1-2", "--write-directions", "--threads", 1)
+        said = self.ok(*self.words, "-o", "p.#.vdb", "--frames", "1-2", "--write-directions", "--threads", 1).stderr
+        self.assertEqual(said.count("singularities"), 1, "of what is made once")
         # The pose at rest: what a run without --rest makes, but for the rebuilt band.
         self.ok("analogy", "a.vdb", "a2.vdb", "rest.off", "-o", "plain.vdb", "--resolution", 64, "--direction", "axis:z")
         solid = [json.loads(self.ok("info", name, "--json").stdout)["model"]["solid_voxels"] for name in ("plain.vdb", "p.1.vdb", "p.2.vdb")]
@@ -127,7 +129,14 @@ class Poses(CliTest):
 
     def test_refused(self):
         self.write("other.off", "OFF\n4 4 0\n0 0 0\n9 0 0\n0 9 0\n0 0 9\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n")
-        self.fails(1, "both must have the same faces", "analogy", "a.vdb", "a2.vdb", "other.off", "--rest", "rest.off", "-o", "x.vdb")
+        # Before anything is made.
+        result = self.fails(1, "other.off: has 4 vertices and 4 triangles, rest.off (--rest) has",
+                            "analogy", "a.vdb", "a2.vdb", "other.off", "--rest", "rest.off", "-o", "x.vdb", "-v")
+        self.assertNotIn("level 1", result.stderr)
+        self.fails(2, "--rest b.1.off: is another file for every frame", "analogy", "a.vdb", "a2.vdb", "b.#.off", "--rest", "b.#.off",
+                   "-o", "x.#.vdb", "--frames", "1-2", "--resolution", 32)
+        self.fails(1, "a2.vdb: the model at rest", "analogy", "a.vdb", "a2.vdb", "a2.vdb", "--rest", "rest.off", "-o", "x.vdb", "--resolution", 32,
+                   "--draft")
         self.fails(2, "--source-map", *self.words, "-o", "x.#.vdb", "--frames", "1", "--source-map", "m.#.vdb")
         self.fails(1, "rest", "analogy", "a.vdb", "a2.vdb", "a2.vdb", "--rest", "rest.off", "-o", "x.vdb", "--resolution", 32)
 

@@ -212,6 +212,8 @@ class Masks(Case):
 
     def test_one_that_meets_nothing_is_said(self):
         self.write("far.off", box("far", (100, 100, 100), (120, 120, 120)))
+        self.fails(2, "waves.png: a picture has no place in space; give a model or FILE.vdb:GRID, or the picture as --mask-image",
+                   "relief", "waves.png", "c.vdb", "-o", "m.obj", "--mask", "waves.png")
         said = self.ok("relief", "waves.png", "c.vdb", "-o", "m.obj", "--mask", "far.off").stderr
         self.assertIn("nothing is changed", said)
         self.assertEqual(self.read("m.obj"), self.read("plain.obj"))

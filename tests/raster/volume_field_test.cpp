@@ -24,6 +24,8 @@ TEST_CASE("volumeField: a threshold's surface is that of linear interpolation, w
         const RasterField result = volumeField("a", raster, options);
         CHECK(crossing(result.field, {19, 20, 20}, 0) == Approx(31.3).margin(0.01));
         CHECK(result.domain == IndexBox::fromSize({40, 40, 40}));
+        // Values that change by one from sample to sample are distances.
+        CHECK((result.distanceBand > 0) == (scale == 1));
     }
 }
 
@@ -42,6 +44,8 @@ TEST_CASE("volumeField: below a value is above the opposite value of the opposit
     bool same = true;
     forEachVoxel(one.domain, [&](const Index3& p) { same = same && one.field.at(p) == other.field.at(p); });
     CHECK(same);
+    CHECK(one.distanceBand > 3.5f);
+    CHECK(one.field.at({16, 10, 10}) == Approx(0.2).margin(0.01));
     below.below = -7;
     const test::Thrown none = test::thrownBy([&] {
         volumeField("a", rasterOf({20, 20, 20}, distance), below);

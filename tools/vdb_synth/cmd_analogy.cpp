@@ -238,9 +238,10 @@ void requirePose(Run& run) {
                         "anew each time and swim; name the one pose that it is made on");
     if (!isMeshPath(rest) || !isMeshPath(posed)) return;
     const Mesh from = readMesh(rest, run.context), to = readMesh(posed, run.context);
+    // In triangles: of quads that are concave in one pose alone two are made.
     const auto counts = [](const Mesh& mesh) {
-        return std::to_string(mesh.points.size()) + " vertices and " + std::to_string(mesh.faceCount()) +
-               " faces";
+        return std::to_string(mesh.points.size()) + " vertices and " +
+               std::to_string(mesh.triangles.size() + 2 * mesh.quads.size()) + " triangles";
     };
     if (counts(from) != counts(to))
         throw Error(ErrorCode::ShapeMismatch, posed + ": has " + counts(to) + ", " + rest + " (--rest) has " +

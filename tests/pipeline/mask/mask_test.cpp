@@ -6,6 +6,7 @@
 #include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/mask.h"
 #include "tests/support/makers.h"
+#include "tests/support/said.h"
 
 #include <atomic>
 #include <limits>
@@ -151,6 +152,22 @@ TEST_CASE("makeMask: a field of another kind is said", "[pipeline]") {
     options.voxelSize = 2;
     makeMask(options, sphere(), ctx);
     CHECK(test::contains(said, "`voxelSize` has no effect on mask inside"));
+}
+
+TEST_CASE("makeMask: an empty range is said, with the values that there are", "[pipeline]") {
+    openvdb::initialize();
+    test::Said said;
+    MaskOptions options;
+    options.kind = MaskKind::Range;
+    options.range = {500, 600};
+    CHECK(makeMask(options, sphere(), said.ctx)->empty());
+    CHECK(said.warned("the mask is empty: no value lies from 500 to 600; the grid's values go from -"));
+    options.range = {-1, 1};
+    test::Said nothing;
+    CHECK_FALSE(makeMask(options, sphere(), nothing.ctx)->empty());
+    CHECK(nothing.nothing());
+    CHECK(makeMask(options, openvdb::FloatGrid::create(9), said.ctx)->empty());
+    CHECK(said.warned("as the grid has no active voxel"));
 }
 
 TEST_CASE("parseMaskKind: the words of the kinds, and no others", "[pipeline]") {

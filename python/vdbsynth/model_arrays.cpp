@@ -52,7 +52,7 @@ LevelSet textureOfArray(const ArrayView& distances, const ArrayPlace& place, dou
             return std::clamp(nearestValue(distances, p - corner) * scale, -kRasterFieldLimit,
                               kRasterFieldLimit);
         });
-    LevelSet model = modelFromField(field, kRasterFieldLimit, /* exact= */ false, domain, place.voxelSize,
+    LevelSet model = modelFromField(field, kRasterFieldLimit, /* exact= */ false, 0, domain, place.voxelSize,
                                     kName, "no part of it is negative", ctx);
     move(model, moved);
     return withHalfWidth(model, halfWidth, ctx);
@@ -74,8 +74,8 @@ LevelSet solidOfVolume(const ArrayView& values, const ArrayPlace& place, const V
                 raster.values[raster.index(x, y, z)] = values.values[offsetIn(values, {x, y, z})];
     const RasterField field = volumeField(kName, raster, options, ctx);
     if (!field.description.empty()) message(ctx, MessageLevel::Note, kName + (": " + field.description));
-    LevelSet model = modelFromField(field.field, kRasterFieldLimit, /* exact= */ false, field.domain,
-                                    field.voxelSize, kName, "no part of it is solid", ctx);
+    LevelSet model = modelFromField(field.field, kRasterFieldLimit, /* exact= */ false, field.distanceBand,
+                                    field.domain, field.voxelSize, kName, "no part of it is solid", ctx);
     sayLostSamples(kName, field, *model.grid, ctx);
     move(model, field.origin);
     return withHalfWidth(model, halfWidth, ctx);

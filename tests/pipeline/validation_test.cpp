@@ -300,7 +300,8 @@ TEST_CASE("AnalogyOptions: every field out of its range is refused", "[pipeline]
     source.kind = DirectionSource::Kind::Axis;
     source.axis = {0, 0, 0};
     cases.push_back(with("`direction`", &O::direction, source, call));
-    cases.push_back({"`pairs`", ErrorCode::InvalidOption, [&] { makeAnalogyModel({}, model, {}); }});
+    cases.push_back({"`pairs`", ErrorCode::InvalidOption,
+                     [&] { makeAnalogyModel(std::vector<AnalogyModelPair>{}, model, {}); }});
     cases.push_back({"the pair, textured", ErrorCode::InvalidOption, [&] {
                          makeAnalogyModel({{&model, nullptr}}, model, {});
                      }});

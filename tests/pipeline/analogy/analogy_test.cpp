@@ -13,6 +13,7 @@
 #include "libvdbsynth/vdb/grid_kinds.h"
 #include "libvdbsynth/vdb/source_map_grids.h"
 #include "tests/support/makers.h"
+#include "tests/support/said.h"
 
 using namespace vdbsynth;
 

@@ -123,7 +123,7 @@ TEST_CASE("compareModels: a thresholded random field of known covariance", "[pip
                     *samples++ = float(std::clamp(sum * std::sqrt(2.0 / 200) * l, -4.0, 4.0));
                 }
     });
-    const LevelSet model = modelFromField(field, 4, false, IndexBox::fromSize({n, n, n}), 1, "field", "");
+    const LevelSet model = modelFromField(field, 4, false, 0, IndexBox::fromSize({n, n, n}), 1, "field", "");
     const Comparison c = compared(model, model);
     CHECK(valueOf(c.reference, "volume fraction") == Approx(0.5).margin(0.04));
     // Rice: a line crosses the level 1 / (pi l) times a voxel; the area is twice that.
@@ -336,7 +336,7 @@ TEST_CASE("compareModels: caps of two textures in one place are no distance betw
                             *samples++ = float(std::clamp(std::hypot(cy, cz) - 6, -4.0, 4.0));
                         }
             });
-        return modelFromField(field, 4, false, domain, 1, "rods", "");
+        return modelFromField(field, 4, false, 0, domain, 1, "rods", "");
     };
     const Comparison c = compared(rods(0), rods(3));
     const ModelDistances& d = c.distances.front();

@@ -42,7 +42,7 @@ LevelSet carved(const IndexBox& domain, bool texture, const std::optional<IndexB
                         *samples++ = std::clamp(d, -4.f, 4.f);
                     }
         });
-    LevelSet model = modelFromField(field, 4, false, domain, 1, "carved", "");
+    LevelSet model = modelFromField(field, 4, false, 0, domain, 1, "carved", "");
     model.domainRecorded = texture;
     return model;
 }

@@ -275,7 +275,7 @@ class Hostile(Case):
         self.write("triangle.off", "OFF\n3 1 0\n0 0 0\n9 0 0\n0 9 0\n3 0 1 2\n")
         self.fails(1, "--open shell", "relief", "triangle.off", "c.vdb", "-o", "x.vdb")
         self.ok("make", "balls", "b.vdb", "--resolution", 32)
-        self.fails(1, "no base is left", "relief", "b.vdb", "c.vdb", "-o", "x.vdb", "--base-radius", 300)
+        self.fails(1, "no base is left", "relief", "b.vdb", "c.vdb", "-o", "x.vdb", "--base-radius", 60)
         self.fails(3, "missing.off", "relief", "missing.off", "c.vdb", "-o", "x.vdb")
         self.fails(3, "missing.off", "relief", "waves.png", "missing.off", "-o", "x.vdb")
 

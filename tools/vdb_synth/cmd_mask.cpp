@@ -7,8 +7,24 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <string>
+
 namespace vdbsynth::cli {
 namespace {
+
+// A box in world units is cut to whole voxels, whose size nobody chose.
+void sayVoxels(const Run& run, const IndexBox& box) {
+    const BoxValue given = run.arguments.box("box");
+    if (run.arguments.has("voxel-size") ||
+        std::none_of(given.begin(), given.end(), [](const SizeValue& end) { return end.world; }))
+        return;
+    const Index3 size = box.size();
+    message(run.context, MessageLevel::Note,
+            "--voxel-size: not given; voxels are 1 wide (world), and the box takes " +
+                std::to_string(size.x) + " x " + std::to_string(size.y) + " x " + std::to_string(size.z) +
+                " of them");
+}
 
 MaskOptions readMaskOptions(const Run& run) {
     const Arguments& arguments = run.arguments;
@@ -23,6 +39,7 @@ MaskOptions readMaskOptions(const Run& run) {
         Affine transform = kIdentity;
         for (std::size_t axis = 0; axis < 3; ++axis) transform[5 * axis] = options.voxelSize.value_or(1);
         options.box = voxelsOf(arguments.box("box"), transform, "--box " + arguments.text("box"));
+        if (shape) sayVoxels(run, *options.box);
     }
     if (arguments.has("center")) {
         const std::array<double, 3> c = arguments.triple("center");

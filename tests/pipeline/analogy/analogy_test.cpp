@@ -235,7 +235,7 @@ TEST_CASE("makeAnalogyModel: strength 0 and an empty mask leave the target as it
 }
 
 TEST_CASE("makeAnalogyModel: outside a mask of any kind the target's bits stay", "[pipeline][property]") {
-    const ModelPair pair = pairOf("dilation");
+    const ModelPair pair = pairOf("dilation", 48);
     const LevelSet target = tori();
     const openvdb::Vec3f middle(36, 36, 36);
     const auto solid = [&](float voxel, float band) -> GridConstPtr {
@@ -245,11 +245,13 @@ TEST_CASE("makeAnalogyModel: outside a mask of any kind the target's bits stay",
     numbers->fill(openvdb::CoordBBox({0, 0, 0}, {30, 90, 90}), 1.f);
     const auto truths = openvdb::BoolGrid::create(false);
     truths->fill(openvdb::CoordBBox({0, 0, 0}, {30, 90, 90}), true);
+    AnalogyOptions options;
+    options.direction = direction("around:z");
+    const auto prepared = preparePairs({{&pair.plain, &pair.textured}}, options);
     for (const GridConstPtr& mask :
          {solid(0.4f, 3), solid(1, 2), solid(3, 3), GridConstPtr(numbers), GridConstPtr(truths)}) {
-        AnalogyOptions options;
         options.mask = mask;
-        const AnalogyResult result = applied(pair, target, options);
+        const AnalogyResult result = makeAnalogyModel(*prepared, target, options);
         const bool isSolid = mask->getGridClass() == openvdb::GRID_LEVEL_SET;
         std::size_t flipped = 0, changed = 0, far = 0;
         auto made = result.model.grid->getConstAccessor();

@@ -93,7 +93,9 @@ class Synth(CliTest):
         self.assertEqual(self.model("h.vdb")["domain"], "8,8,8,47,47,47")
         self.ok("synth", "a.vdb", "-o", "s.vdb", "--exemplar-box", "2w,2w,2w,12w,12w,12w", "--size", "15w,1x,1x")
         self.assertEqual(self.model("s.vdb")["domain"], "4,4,4,33,23,23")
-        self.ok("mask", "box", "-o", "k.vdb", "--box", "0w,0w,0w,1w,2w,3w", "--voxel-size", 0.5)
+        self.assertNotIn("--voxel-size", self.ok("mask", "box", "-o", "k.vdb", "--box", "0w,0w,0w,1w,2w,3w", "--voxel-size", 0.5).stderr)
+        self.assertIn("voxels are 1 wide (world), and the box takes 1 x 2 x 3 of them",
+                      self.ok("mask", "box", "-o", "wide.vdb", "--box", "0w,0w,0w,1w,2w,3w").stderr)
         grid = json.loads(self.ok("info", "k.vdb", "--json").stdout)["grids"][0]
         self.assertEqual(grid["active_voxels"], 2 * 4 * 6)
         self.ok("synth", "--keep", "a.vdb", "--hole", "8,8,8,23,23,23", "-o", "x.vdb")

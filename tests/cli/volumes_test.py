@@ -120,6 +120,7 @@ class Outputs(CliTest):
         self.fails(2, "--values", "convert", "ball.vdb", "-o", "x.npy", "--values", "labels")
         self.assertIn("--values has no effect", self.ok("convert", "ball.vdb", "-o", "x.obj", "--values",
                                                         "inside").stderr)
+        self.assertIn("--spacing has no effect without --as points", self.ok("convert", "ball.vdb", "-o", "x.obj", "--spacing", 3).stderr)
         self.assertFalse([name for name in self.files() if name.startswith("x.n")])
 
     def test_distances_come_back_below_zero(self):

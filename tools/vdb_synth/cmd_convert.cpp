@@ -32,14 +32,16 @@ void requireKind(const std::string& as, const std::string& input, const std::str
         require(!heights && !volume && extension != "vdb", ".obj, .ply, .stl, .off, .glb, .gltf or .3mf");
 }
 
-// --height is of images, as inputs and as outputs.
-void noteUnusedHeight(const Run& run, const std::vector<std::string>& paths) {
+// --height is of images, as inputs and as outputs; --spacing of points.
+void noteUnused(const Run& run, const std::vector<std::string>& paths) {
     const auto isImage = [](const std::string& path) {
         return extensionOf(path) == "png" || extensionOf(path) == "exr";
     };
     if (run.arguments.has("height") && !isRasterPath(run.arguments.inputs[0]) &&
         std::none_of(paths.begin(), paths.end(), isImage))
         message(run.context, MessageLevel::Note, "`height` has no effect without an image to read or write");
+    if (run.arguments.has("spacing") && run.arguments.text("as") != "points")
+        message(run.context, MessageLevel::Note, "`spacing` has no effect without --as points");
 }
 
 void convert(Run& run) {
@@ -62,7 +64,7 @@ void convert(Run& run) {
     requireModelPath(run.arguments.inputs[0]);
     const LevelSet model =
         withHalfWidth(run.load(run.arguments.inputs[0], modelOptions), modelOptions.halfWidth, run.context);
-    noteUnusedHeight(run, paths);
+    noteUnused(run, paths);
     run.describeOutputs(outputs);
     writeModel(model, paths, outputs, run.outputs(), run.context);
     run.describe(model);

@@ -77,14 +77,17 @@ void deliver(const Call& call, const Event& event) {
         call.onMessage(wordOf(said.first), said.second);
 }
 
+bool isCancelled(const Call& call) {
+    return !call.cancel.is_none() && py::cast<bool>(py::bool_(call.cancel.attr("is_set")()));
+}
+
 // The calling thread's part of one round; what it raises is kept, and stops the work.
 void attend(const Call& call, const std::vector<Event>& events, Shared& shared, std::exception_ptr& raised) {
     if (raised) return;
     try {
         for (const Event& event : events) deliver(call, event);
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-        if (!call.cancel.is_none() && py::cast<bool>(py::bool_(call.cancel.attr("is_set")())))
-            shared.stop = true;
+        if (isCancelled(call)) shared.stop = true;
     } catch (...) {
         raised = std::current_exception();
         shared.stop = true;
@@ -124,6 +127,9 @@ void Call::execute(const std::function<void(const RunContext&)>& todo) {
     own.onProgress = [&](const Progress& progress) { shared.push(progress); };
     own.onMessage = [&](MessageLevel level, const std::string& text) { shared.push(Message{level, text}); };
     std::exception_ptr raised;
+    // Work that is quicker than the first look would not hear of it.
+    shared.stop = isCancelled(*this);
+    throwIfCancelled(own);
     std::thread worker([&] { work(todo, own, shared); });
     for (bool running = true; running;) {
         std::vector<Event> events;

@@ -51,7 +51,7 @@ class BadOptions(CliTest):
             ("--seed: is no option of render; ", ["render", "g.vdb", "-o", "x.png", "--seed", "1"]),
             ("--which: is now --exemplar-map", ["synth", "g.vdb", "g.vdb", "-o", "x.vdb", "--size", "2x,2x,2x", "--which", "g.vdb"]),
             ("--guide-weight 0: must be a number from 0.001 to 1000", ["synth", "g.vdb", "-o", "x.vdb", "--size", "2x,2x,2x", "--guide-weight", 0]),
-            ("--view 1e300,0,0", ["render", "g.vdb", "-o", "x.png", "--view", "1e300,0,0"]),
+            ("--view 1e+300,0,0", ["render", "g.vdb", "-o", "x.png", "--view", "1e300,0,0"]),
         ]
         for says, words in cases:
             with self.subTest(words=words):

@@ -13,7 +13,8 @@ add_cli_test(analogy_test Analogy)
 add_cli_test(batch_test Plans Refusals Runs Kills)
 add_cli_test(slurm_test Refusals Runs Kills)
 # These start munged, slurmctld and two slurmd, and skip where they are not installed (packages.sh all) or not run by root.
-set_tests_properties("cli: slurm_test Runs" "cli: slurm_test Kills" PROPERTIES LABELS "cli;slow")
+# Minutes of stopping and starting: tools/run_tests.sh --all.
+set_tests_properties("cli: slurm_test Runs" "cli: slurm_test Kills" "cli: batch_test Kills" PROPERTIES LABELS "cli;all;slow")
 add_cli_test(compare_test Compare Libraries Page)
 add_cli_test(options_test Answers Overwriting Help Moved)
 add_cli_test(patch_test Sheets Refused)
@@ -23,6 +24,7 @@ add_cli_test(formats_test Formats)
 add_cli_test(frames_test Frames Poses TwistedBunny)
 add_cli_test(path_test Attributes Doors StandardStreams MainPath Determinism Words)
 add_cli_test(error_test BadOptions BadFiles Disk Signals)
+set_tests_properties("cli: error_test Signals" PROPERTIES LABELS "cli;all;slow")
 add_cli_test(readme_test Readme)
 add_cli_test(relief_extract_test ReliefExtract)
 add_cli_test(relief_test Relief Masks Hostile)
@@ -67,7 +69,7 @@ endforeach()
 
 # A short run of every fuzz target; tools/dev/fuzz.sh runs them for longer.
 add_test(NAME "fuzz: readers" COMMAND ${PROJECT_SOURCE_DIR}/tools/dev/fuzz.sh 3)
-set_tests_properties("fuzz: readers" PROPERTIES LABELS "fuzz;slow" TIMEOUT 1200 SKIP_RETURN_CODE 77)
+set_tests_properties("fuzz: readers" PROPERTIES LABELS "fuzz;all;slow" TIMEOUT 1200 SKIP_RETURN_CODE 77)
 
 add_test(NAME "lint: stairs" COMMAND /usr/bin/python3 ${PROJECT_SOURCE_DIR}/tools/dev/check_stairs.py ${PROJECT_SOURCE_DIR})
 add_test(NAME "lint: format" COMMAND ${PROJECT_SOURCE_DIR}/tools/dev/check_format.sh)

@@ -220,18 +220,23 @@ TEST_CASE("makeAnalogyModel: hollowing makes a shell of the pair's thickness, a 
 }
 
 TEST_CASE("makeAnalogyModel: strength 0 and an empty mask leave the target as it is", "[pipeline]") {
-    const ModelPair pair = pairOf("dilation");
+    const ModelPair pair = pairOf("dilation", 48);
     const LevelSet target = tori();
-    AnalogyOptions none;
+    AnalogyOptions plain;
+    plain.direction = direction("around:z");
+    const auto prepared = preparePairs({{&pair.plain, &pair.textured}}, plain);
+    const auto solidWith = [&](const AnalogyOptions& options) {
+        return solidVoxels(*makeAnalogyModel(*prepared, target, options).model.grid);
+    };
+    AnalogyOptions none = plain, masked = plain;
     none.strength = 0;
     const double before = solidVoxels(*target.grid);
-    CHECK(solidVoxels(*applied(pair, target, none).model.grid) == Approx(before).epsilon(0.003));
-    AnalogyOptions masked;
+    CHECK(solidWith(none) == Approx(before).epsilon(0.003));
     const auto empty = openvdb::FloatGrid::create(0.f);
     empty->setTransform(target.grid->transform().copy());
     masked.mask = empty;
-    CHECK(solidVoxels(*applied(pair, target, masked).model.grid) == Approx(before).epsilon(0.003));
-    CHECK(solidVoxels(*applied(pair, target).model.grid) > 1.5 * before);
+    CHECK(solidWith(masked) == Approx(before).epsilon(0.003));
+    CHECK(solidWith(plain) > 1.5 * before);
 }
 
 TEST_CASE("makeAnalogyModel: outside a mask of any kind the target's bits stay", "[pipeline][property]") {
@@ -304,14 +309,14 @@ TEST_CASE("makeAnalogyModel: the same bits for any threads", "[pipeline][tsan]")
 TEST_CASE("makeAnalogyModel: prepared pairs give each target what the pairs themselves do",
           "[pipeline][property]") {
     const ModelPair pair = pairOf("dilation", 48);
-    MakeOptions smaller = makeOptions("three-tori", 48);
     AnalogyOptions options;
     options.direction = direction("around:z");
     for (const bool draft : {false, true}) {
         options.draft = draft;
         options.scale = draft ? 0.8 : 1;
         const auto prepared = preparePairs({{&pair.plain, &pair.textured}}, options);
-        for (const LevelSet& target : {makeModel(smaller), tori()}) {
+        for (const int side : {40, 48}) {
+            const LevelSet target = makeModel(makeOptions("three-tori", side));
             const AnalogyResult shared = makeAnalogyModel(*prepared, target, options);
             const AnalogyResult alone = applied(pair, target, options);
             CHECK(levelSetHash(*shared.model.grid) == levelSetHash(*alone.model.grid));

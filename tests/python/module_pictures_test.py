@@ -279,7 +279,7 @@ class Pictures(PictureTest):
         child.send_signal(signal.SIGINT)
         self.assertEqual(child.communicate(timeout=120)[0], "interrupted\n(16, 32, 3)\n")
 
-    def test_other_threads_go_on(self):
+    def test_other_threads_continue(self):
         counted, event = [0], threading.Event()
 
         def count():

@@ -382,7 +382,7 @@ class Calls(ModuleTest):
         with self.assertRaisesRegex(RuntimeError, "enough"):
             vdbsynth.synth(self.exemplar(), size="8x,8x,8x", onProgress=stop)
 
-    def test_other_threads_go_on(self):
+    def test_other_threads_continue(self):
         counted, event = [0], threading.Event()
 
         def count():
